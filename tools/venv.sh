@@ -1,0 +1,29 @@
+#!/bin/sh
+# Makes .venv with the project (editable) and its development group. A second run with the same pyproject.toml is instant.
+set -eu
+cd "$(dirname "$0")/.."
+
+python=${PYTHON:-python3}
+"$python" -c 'import sys; sys.exit(sys.version_info < (3, 10))' || {
+    echo "venv.sh: $python is older than Python 3.10; name another with PYTHON=..." >&2
+    exit 1
+}
+want=$("$python" - <<'P'
+import hashlib, pathlib, sys
+print(sys.version_info[:2], hashlib.sha256(pathlib.Path("pyproject.toml").read_bytes()).hexdigest())
+P
+)
+stamp=.venv/roslet-stamp
+[ "$(cat "$stamp" 2>/dev/null || true)" != "$want" ] || exit 0
+
+echo "venv.sh: making .venv"
+if command -v uv >/dev/null 2>&1; then
+    [ -x .venv/bin/python ] || uv venv --quiet --python "$python" .venv
+    uv pip install --quiet --python .venv/bin/python --editable . --group dev
+else
+    [ -x .venv/bin/python ] || "$python" -m venv .venv
+    # Dependency groups are read by pip since 25.1, and Debian 12 has 23.0.
+    .venv/bin/python -m pip install --quiet 'pip>=25.1'
+    .venv/bin/python -m pip install --quiet --editable . --group dev
+fi
+echo "$want" >"$stamp"
