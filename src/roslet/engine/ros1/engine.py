@@ -1,0 +1,386 @@
+"""The ROS 1 node as one machine: its graph entries, its master, its slave API, its connections.
+
+The shell asks `take_connections()` for machines that want a socket, `take_touched()` for those that have something to
+send or want to close, feeds what arrives into the machines, calls `pump(now)` after each input, and
+`handle_deadline(now)` at `deadline()`. Nothing here knows a socket or a clock. Runs on MicroPython.
+"""
+
+from roslet.engine.ros1.graph import Publication, ServiceOffer, Subscription
+from roslet.engine.ros1.links import FrameLink, IncomingLink, Machine, PublisherLink, ServiceClientLink, ServiceServerLink
+from roslet.engine.ros1.registration import Registrations
+from roslet.engine.ros1.rpc import CallReceived, ReplyReceived, RpcClient, RpcServer
+from roslet.engine.ros1.slave import Slave
+from roslet.engine.ros1.udp import UdpReceiver, UdpSender
+from roslet.errors import Fault, InvalidName, ProtocolError, RosletError
+from roslet.names import parse_host_port
+from roslet.wire.tcpros import MAX_FRAME, emit_header, require
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    Answered = Callable[[object, "Exception | None", float], None]
+
+# Events kept for a shell that does not take them: the oldest goes first.
+MAX_EVENTS = 1000
+# Seconds for one call of the master or of another node's slave API.
+CALL_TIMEOUT = 10.0
+
+
+class Engine:
+    """One ROS 1 node.
+
+    name        full name of the node
+    master_uri  http://host:port
+    host        what other machines reach us by
+    pid         process id, for getPid
+    """
+
+    def __init__(self, name: str, master_uri: str, host: str, pid: int = 0) -> None:
+        self.name = name
+        self.master_uri = master_uri
+        self.host = host
+        self.pid = pid
+        self.uri = ""
+        self.service_uri = ""
+        self.tcpros_port = 0
+        self.publications: dict[str, Publication] = {}
+        self.subscriptions: dict[str, list[Subscription]] = {}
+        self.services: dict[str, ServiceOffer] = {}
+        self.registrations = Registrations(self)
+        self.slave = Slave(self)
+        self.counters: dict[str, int] = {}
+        self.parameters: dict[str, object] = {}  # subscribed ones, as the master last told
+        self.shutdown_reason: "str | None" = None
+        self.udp: "object | None" = None  # the shell's datagram socket: host, port, send(data, address)
+        self.on_note: "Callable[[str], None] | None" = None
+        self.on_parameter: "Callable[[str, object], None] | None" = None
+        self.on_shutdown: "Callable[[str], None] | None" = None
+        self._ids = 0
+        self._new: list[Machine | RpcClient] = []
+        self._touched: list[Machine | RpcClient] = []
+        host_name, port = parse_host_port(master_uri)
+        self._master = RpcClient(host_name, port)
+        self._master_calls: dict[int, Answered] = {}
+        self._slave_calls: list[tuple[RpcClient, Answered]] = []
+        self._watched: list[str] = []
+        self._receivers: dict[int, UdpReceiver] = {}
+
+    def listening(self, rpc_port: int, tcpros_port: int) -> None:
+        """Where the shell accepts: the slave API's and the TCPROS port."""
+        self.uri = "http://%s:%d/" % (self.host, rpc_port)
+        self.service_uri = "rosrpc://%s:%d" % (self.host, tcpros_port)
+        self.tcpros_port = tcpros_port
+
+    # -- towards the shell
+
+    def next_connection_id(self) -> int:
+        self._ids += 1
+        return self._ids
+
+    def open(self, machine: "Machine | RpcClient") -> None:
+        """The machine wants a socket."""
+        self._new.append(machine)
+
+    def touch(self, machine: "Machine | RpcClient") -> None:
+        """The machine has something to send, or wants to close."""
+        self._touched.append(machine)
+
+    def take_connections(self) -> "list[Machine | RpcClient]":
+        machines, self._new = self._new, []
+        if self._master.wants_connection and self._master not in machines:
+            machines.append(self._master)
+        return machines
+
+    def take_touched(self) -> "list[Machine | RpcClient]":
+        machines, self._touched = self._touched, []
+        return machines
+
+    def accept_rpc(self, now: float) -> RpcServer:
+        return RpcServer(now)
+
+    def accept_tcpros(self, now: float) -> IncomingLink:
+        return IncomingLink(self, now)
+
+    def count(self, reason: str, number: int = 1) -> None:
+        """Count a drop or a refusal under its name."""
+        if reason in self.counters or len(self.counters) < MAX_EVENTS:
+            self.counters[reason] = self.counters.get(reason, 0) + number
+
+    def note(self, text: str) -> None:
+        """Something that a person should read."""
+        if self.on_note is not None:
+            self.on_note(text)
+
+    def deadline(self) -> "float | None":
+        soonest = self.registrations.deadline()
+        for entries in self.subscriptions.values():
+            for subscription in entries:
+                when = subscription.deadline()
+                if when is not None and (soonest is None or when < soonest):
+                    soonest = when
+        return soonest
+
+    def handle_deadline(self, now: float) -> None:
+        self.registrations.handle_deadline(now)
+        for entries in list(self.subscriptions.values()):
+            for subscription in entries:
+                subscription.handle_deadline(now)
+
+    # -- calls out
+
+    def call_master(self, method: str, arguments: "list[object] | list[str]", done: "Answered", now: float) -> None:
+        """Call the master; `done(value, error, now)` is called once, with the third item of its reply."""
+        call_id = self._master.call(method, list(arguments), now)
+        self._master_calls[call_id] = done
+        self.touch(self._master)
+
+    def call_slave(self, uri: str, method: str, arguments: "list[object]", done: "Answered", now: float) -> None:
+        """Call another node's slave API, on a connection of its own."""
+        try:
+            host, port = parse_host_port(uri)
+        except InvalidName as error:
+            done(None, error, now)
+            return
+        client = RpcClient(host, port)
+        client.call(method, arguments, now)
+        self._slave_calls.append((client, done))
+        self.open(client)
+
+    def pump(self, now: float) -> None:
+        """Act on the answers that have come. Call it after any input."""
+        client = self._master
+        while True:
+            event = client.next_event()
+            if event is None:
+                break
+            done = self._master_calls.pop(event.call_id, None)
+            if done is not None:
+                _hand(event, done, now)
+        if self._slave_calls:
+            for entry in list(self._slave_calls):
+                client, done = entry
+                event = client.next_event()
+                if event is not None:
+                    self._slave_calls.remove(entry)
+                    client.closing = True
+                    self.touch(client)
+                    _hand(event, done, now)
+
+    def rpc_pump(self, server: RpcServer, now: float) -> None:
+        """Answer the calls that have come in on one connection."""
+        while True:
+            event = server.next_event()
+            if event is None:
+                return
+            if isinstance(event, CallReceived):
+                server.reply(event.call_id, self.slave.dispatch(event.method, event.params, now))
+
+    # -- the node's graph entries
+
+    def advertise(
+        self, topic: str, type_name: str, md5sum: str, definition: str, latching: bool, depth: int, now: float
+    ) -> Publication:
+        """Raises RosletError where this node publishes the topic already."""
+        if topic in self.publications:
+            raise RosletError("%s already publishes %s" % (self.name, topic))
+        publication = Publication(self, topic, type_name, md5sum, definition, latching, depth)
+        self.publications[topic] = publication
+        self.registrations.add(publication, now)
+        return publication
+
+    def unadvertise(self, publication: Publication, now: float) -> None:
+        if self.publications.get(publication.topic) is publication:
+            del self.publications[publication.topic]
+            self.registrations.remove(publication, now)
+            publication.close()
+
+    def subscribe(
+        self,
+        topic: str,
+        type_name: str,
+        md5sum: str,
+        definition: str,
+        sink: "Callable[[memoryview, int, int, object], None]",
+        now: float,
+        max_frame: int = MAX_FRAME,
+        transport: str = "tcp",
+    ) -> Subscription:
+        """Several subscriptions of one topic have a connection each; the master hears of the topic once for each."""
+        subscription = Subscription(self, topic, type_name, md5sum, definition, sink, max_frame, transport)
+        self.subscriptions.setdefault(topic, []).append(subscription)
+        self.registrations.add(subscription, now)
+        return subscription
+
+    def unsubscribe(self, subscription: Subscription, now: float) -> None:
+        entries = self.subscriptions.get(subscription.topic, [])
+        if subscription not in entries:
+            return
+        entries.remove(subscription)
+        subscription.close()
+        if entries:
+            self.registrations.entries.pop(subscription, None)  # the master keeps the topic for the others
+        else:
+            del self.subscriptions[subscription.topic]
+            self.registrations.remove(subscription, now)
+
+    def offer_service(
+        self,
+        name: str,
+        type_name: str,
+        md5sum: str,
+        types: "tuple[str, str]",
+        handler: "Callable[[memoryview, int, int, ServiceServerLink], bytes]",
+        now: float,
+    ) -> ServiceOffer:
+        if name in self.services:
+            raise RosletError("%s already offers the service %s" % (self.name, name))
+        offer = ServiceOffer(self, name, type_name, md5sum, types, handler)
+        self.services[name] = offer
+        self.registrations.add(offer, now)
+        return offer
+
+    def withdraw_service(self, offer: ServiceOffer, now: float) -> None:
+        if self.services.get(offer.topic) is offer:
+            del self.services[offer.topic]
+            self.registrations.remove(offer, now)
+            offer.close()
+
+    def service_link(self, uri: str, header: "dict[str, str]", now: float) -> ServiceClientLink:
+        """A connection to the service at `uri` (rosrpc://host:port). Raises InvalidName."""
+        link = ServiceClientLink(self, header, parse_host_port(uri), now)
+        self.open(link)
+        return link
+
+    def watch_parameter(self, key: str, done: "Answered", now: float) -> None:
+        """subscribeParam; the value comes to `done`, later changes to `on_parameter` and `parameters`."""
+        if key not in self._watched:
+            self._watched.append(key)
+
+        def answered(value: object, error: "Exception | None", when: float) -> None:
+            if error is None:
+                self.parameters[key] = value
+            done(value, error, when)
+
+        self.call_master("subscribeParam", [self.name, self.uri, key], answered, now)
+
+    def unwatch_parameter(self, key: str, now: float) -> None:
+        if key in self._watched:
+            self._watched.remove(key)
+            self.parameters.pop(key, None)
+            self.call_master("unsubscribeParam", [self.name, self.uri, key], _ignore, now)
+
+    def master_found(self, now: float) -> None:
+        """The master is there again, knowing nothing: watch again what was watched."""
+        for key in self._watched:
+            self.call_master("subscribeParam", [self.name, self.uri, key], self._rewatched(key), now)
+
+    def _rewatched(self, key: str) -> "Answered":
+        def answered(value: object, error: "Exception | None", when: float) -> None:
+            if error is None and value != {} and value != self.parameters.get(key):
+                self.parameter_changed(key, value)
+
+        return answered
+
+    def parameter_changed(self, key: str, value: object) -> None:
+        key = key[:-1] if len(key) > 1 and key.endswith("/") else key
+        if key in self._watched:
+            self.parameters[key] = value
+        if self.on_parameter is not None:
+            self.on_parameter(key, value)
+
+    # -- connections in
+
+    def greet(self, fields: "dict[str, str]", outgoing: "list[bytes]", now: float) -> "FrameLink | None":
+        """What an incoming connection becomes; our header goes to `outgoing`. Raises ProtocolError to refuse it."""
+        require(fields, ("callerid", "md5sum"))
+        if "service" in fields:
+            return self._greet_client(fields, outgoing)
+        require(fields, ("topic",))
+        publication = self.publications.get(fields["topic"])
+        if publication is None:
+            raise ProtocolError("unknown-topic", "%s does not publish %s" % (self.name, fields["topic"]))
+        refusal = publication.accepts(fields)
+        if refusal:
+            self.note(refusal)
+            raise ProtocolError("type-mismatch", refusal)
+        outgoing.append(emit_header(publication.header()))
+        link = PublisherLink(self, publication, fields, publication.depth)
+        publication.add(link)
+        return link
+
+    def _greet_client(self, fields: "dict[str, str]", outgoing: "list[bytes]") -> "FrameLink | None":
+        offer = self.services.get(fields["service"])
+        if offer is None:
+            raise ProtocolError("unknown-service", "%s does not offer %s" % (self.name, fields["service"]))
+        if fields["md5sum"] not in ("*", offer.md5sum):
+            text = "service %s has md5sum %s, the client expects %s" % (offer.topic, offer.md5sum, fields["md5sum"])
+            raise ProtocolError("md5sum-mismatch", text)
+        outgoing.append(emit_header(offer.header()))
+        if fields.get("probe") == "1":
+            return None
+        link = ServiceServerLink(self, offer, fields)
+        offer.links.append(link)
+        return link
+
+    # -- UDPROS
+
+    def udp_request(self, subscription: Subscription) -> "list[object]":
+        return UdpReceiver.request(self, subscription)
+
+    def udp_accepted(self, subscription: Subscription, uri: str, answer: "list[object]", now: float) -> UdpReceiver:
+        receiver = UdpReceiver.accepted(self, subscription, uri, answer)
+        self._receivers[receiver.connection_id] = receiver
+        subscription.link_opened(receiver, now)
+        return receiver
+
+    def add_udp_sender(self, publication: Publication, fields: "dict[str, str]", host: str, port: int, size: int) -> UdpSender:
+        sender = UdpSender(self, publication, fields, (host, port), size)
+        publication.senders = publication.senders + (sender,)
+        publication.opened(sender)
+        return sender
+
+    def close_udp(self, link: "UdpReceiver | UdpSender") -> None:
+        link.closing = True
+        self._receivers.pop(link.connection_id, None)
+
+    def receive_datagram(self, data: memoryview, source: "tuple[str, int]", now: float) -> None:
+        """A datagram on the UDPROS port. Unknown connections and broken blocks are counted and dropped."""
+        UdpReceiver.dispatch(self, self._receivers, data, source, now)
+
+    # -- the end
+
+    def closing_calls(self) -> "list[tuple[str, list[object]]]":
+        """What to tell the master at the end, in this order."""
+        calls: list[tuple[str, list[object]]] = []
+        for entry in self.registrations.entries:
+            where = self.service_uri if entry.kind == "Service" else self.uri
+            calls.append(("unregister" + entry.kind, [self.name, entry.topic, where]))
+        for key in self._watched:
+            calls.append(("unsubscribeParam", [self.name, self.uri, key]))
+        return calls
+
+    def shutdown_requested(self, reason: str) -> None:
+        """The master, or a tool, asks this node to end."""
+        if self.shutdown_reason is None:
+            self.shutdown_reason = reason or "asked to shut down"
+            if self.on_shutdown is not None:
+                self.on_shutdown(self.shutdown_reason)
+
+
+def _hand(event: object, done: "Answered", now: float) -> None:
+    """Unpack a ROS reply `[code, text, value]` and hand on its value or its error."""
+    if not isinstance(event, ReplyReceived):
+        done(None, getattr(event, "error", RosletError("call failed")), now)
+        return
+    reply = event.value
+    if not isinstance(reply, (list, tuple)) or len(reply) != 3 or not isinstance(reply[0], int):
+        done(None, ProtocolError("reply-not-a-triple", repr(reply)[:200]), now)
+    elif reply[0] != 1:
+        done(None, Fault(reply[0], str(reply[1])), now)
+    else:
+        done(reply[2], None, now)
+
+
+def _ignore(value: object, error: "Exception | None", now: float) -> None:
+    return

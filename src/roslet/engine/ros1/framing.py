@@ -1,0 +1,137 @@
+"""Cuts a TCPROS byte stream into frames, in place: the bytes that arrive are the bytes a message's views show.
+
+The shell asks `writable()` for room, receives into it, and says `received(n)`; each complete frame goes to
+`deliver(view, start, end)` at once, in the same thread. Runs on MicroPython.
+
+Memory: small frames share one chunk of `CHUNK` bytes. A frame that does not fit gets a buffer of its own, which grows
+as bytes arrive (at most doubling), so a length that lies costs its sender as many bytes as it costs us. After delivery
+such a buffer serves the next large frame unless a view on it is still alive; then it belongs to whoever holds the view.
+"""
+
+from struct import unpack_from
+
+from roslet.errors import ProtocolError
+from roslet.wire.tcpros import MAX_FRAME
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+# One receive call takes at most this much of a burst of small frames.
+CHUNK = 64 << 10
+# The first allocation for a large frame; it doubles as bytes arrive.
+FIRST_LARGE = 4 << 20
+
+
+class FrameReceiver:
+    """See the module. `maximum` bounds a frame's body in bytes; a longer one raises ProtocolError frame-too-large.
+
+    `prefix` bytes stand before each length (1 for service replies, else 0); `deliver` gets the start of the body and
+    finds the prefix at `start - 4 - prefix`.
+    """
+
+    def __init__(
+        self,
+        deliver: "Callable[[memoryview, int, int], None]",
+        maximum: int = MAX_FRAME,
+        prefix: int = 0,
+        chunk: int = CHUNK,
+    ) -> None:
+        self.deliver = deliver
+        self.maximum = maximum
+        self._head = 4 + prefix
+        self._prefix = prefix
+        self._chunk = bytearray(chunk)
+        self._chunk_view = memoryview(self._chunk)
+        self._start = 0
+        self._end = 0
+        self._large: "bytearray | None" = None  # the buffer of the large frame being received
+        self._large_size = 0  # bytes of that frame, head included
+        self._large_end = 0  # bytes of it received
+        self._spare: "bytearray | None" = None
+
+    @property
+    def pending(self) -> int:
+        """Bytes received of a frame that is not complete."""
+        return self._large_end if self._large is not None else self._end - self._start
+
+    def writable(self) -> memoryview:
+        """Room for the next bytes, at least one."""
+        large = self._large
+        if large is None:
+            return self._chunk_view[self._end :]
+        if self._large_end == len(large):
+            grown = bytearray(min(self._large_size, 2 * len(large)))
+            grown[: self._large_end] = large
+            self._large = large = grown
+        return memoryview(large)[self._large_end : self._large_size]
+
+    def received(self, count: int) -> None:
+        """`count` bytes now stand in what `writable()` gave. Raises ProtocolError frame-too-large."""
+        if self._large is not None:
+            self._large_end += count
+            if self._large_end == self._large_size:
+                self._finish_large()
+            return
+        self._end = end = self._end + count
+        view = self._chunk_view
+        start = self._start
+        head = self._head
+        while end - start >= head:
+            size = unpack_from("<I", view, start + head - 4)[0]
+            body = start + head
+            if size > end - body:
+                if size > self.maximum:
+                    raise ProtocolError("frame-too-large", "%d bytes; at most %d are accepted" % (size, self.maximum))
+                if head + size > len(view):
+                    self._begin_large(start, end, head + size)
+                    return
+                break
+            self._start = start = body + size
+            self.deliver(view, body, start)
+        if start == end:
+            self._start = self._end = 0
+        elif len(view) - start < CHUNK // 4 or end == len(view):
+            rest = bytes(view[start:end])
+            view[: len(rest)] = rest
+            self._start, self._end = 0, len(rest)
+
+    def feed(self, data: "bytes | bytearray | memoryview") -> None:
+        """Receive `data` by copying it: for tests and for shells that cannot receive into a buffer."""
+        at = 0
+        while at < len(data):
+            room = self.writable()
+            count = min(len(room), len(data) - at)
+            room[:count] = data[at : at + count]
+            at += count
+            self.received(count)
+
+    def _begin_large(self, start: int, end: int, size: int) -> None:
+        have = end - start
+        spare = self._spare
+        if spare is not None and len(spare) >= size:
+            large, self._spare = spare, None
+        else:
+            large = bytearray(min(size, max(FIRST_LARGE, have)))
+        large[:have] = self._chunk_view[start:end]
+        self._large, self._large_size, self._large_end = large, size, have
+        self._start = self._end = 0
+
+    def _finish_large(self) -> None:
+        large, size = self._large, self._large_size
+        self._large = None
+        if large is None:
+            return
+        self.deliver(memoryview(large), self._head, size)
+        if _unshared(large) and (self._spare is None or len(self._spare) <= len(large)):
+            self._spare = large
+
+
+def _unshared(buffer: bytearray) -> bool:
+    """Whether no view on `buffer` is alive: a bytearray that is exported refuses to change its length."""
+    try:
+        last = buffer.pop()
+    except BufferError:
+        return False
+    buffer.append(last)
+    return True

@@ -1,0 +1,367 @@
+"""TCPROS connections as machines: a subscription's, a publication's, a service's two ends, and the one that has just come in
+and has not said yet what it wants.
+
+Every machine here has the same face towards the shell (see `Machine`). Source: ROS 1 TCPROS. Runs on MicroPython.
+"""
+
+from struct import pack, unpack_from
+
+from roslet.engine.ros1.framing import FrameReceiver
+from roslet.engine.ros1.queue import SendQueue
+from roslet.errors import HandshakeRefused, ProtocolError, RosletError, ServiceFailed
+from roslet.record import Names
+from roslet.wire.tcpros import MAX_FRAME, MAX_HEADER, emit_header, parse_header, require
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from roslet.engine.ros1.engine import Engine, Publication, ServiceOffer, Subscription
+
+CONNECTING = 0
+HANDSHAKE = 1
+OPEN = 2
+CLOSED = 3
+STATE = Names("state", {CONNECTING: "connecting", HANDSHAKE: "handshake", OPEN: "open", CLOSED: "closed"})
+
+# Seconds a peer has for its connection and its header; then the connection is given up.
+HANDSHAKE_TIMEOUT = 10.0
+
+
+class Machine:
+    """What the shell drives. It connects to `address` (None: the connection was accepted), reads into `writable()` and
+    says `received(count, now)`, sends what `data_to_send()` gives, closes when `closing` is true, and calls
+    `handle_deadline(now)` at `deadline()`. `user` says that what arrives runs user code.
+    """
+
+    address: "tuple[str, int] | None" = None
+    closing = False
+    user = False
+    state = CONNECTING
+    reason = ""
+    channel: "object | None" = None  # the shell's own; machines only carry it
+
+    def __init__(self) -> None:
+        self._outgoing: list[bytes] = []
+        self._input = bytearray()
+        self._room = bytearray(4096)
+        self._deadline: "float | None" = None
+
+    def connected(self, now: float) -> None:
+        """The connection to `address` stands."""
+
+    def lost(self, reason: str, now: float) -> None:
+        """The connection is gone, or was never made; `reason` is a short text."""
+        self.state = CLOSED
+        self.closing = True
+        self.reason = self.reason or reason
+
+    def writable(self) -> memoryview:
+        return memoryview(self._room)
+
+    def received(self, count: int, now: float) -> None:
+        self.receive_data(memoryview(self._room)[:count], now)
+
+    def receive_data(self, data: "bytes | memoryview", now: float) -> None:
+        """The same for shells that hold the bytes already."""
+        raise NotImplementedError
+
+    def data_to_send(self) -> bytes:
+        data = b"".join(self._outgoing)
+        self._outgoing = []
+        return data
+
+    def deadline(self) -> "float | None":
+        return self._deadline
+
+    def handle_deadline(self, now: float) -> None:
+        if self._deadline is not None and now >= self._deadline:
+            self._deadline = None
+            self.fail("handshake-timeout", now)
+
+    def fail(self, reason: str, now: float) -> None:
+        """Close for a reason of our own."""
+        self.reason = self.reason or reason
+        self.closing = True
+
+    def _take_header(self, data: "bytes | memoryview", now: float) -> "dict[str, str] | None":
+        """Gather the peer's header; None until it is whole. What follows it stays in `_input`."""
+        self._input.extend(data)
+        if len(self._input) < 4:
+            return None
+        size = unpack_from("<I", self._input, 0)[0]
+        if size > MAX_HEADER:
+            raise ProtocolError("header-too-large", "%d bytes; at most %d are accepted" % (size, MAX_HEADER))
+        if len(self._input) < 4 + size:
+            return None
+        fields = parse_header(bytes(self._input[4 : 4 + size]))
+        self._input = bytearray(self._input[4 + size :])
+        self._deadline = None
+        return fields
+
+
+class FrameLink(Machine):
+    """A connection that carries frames once both headers have passed."""
+
+    def __init__(self, maximum: int = MAX_FRAME, prefix: int = 0) -> None:
+        super().__init__()
+        self.frames = FrameReceiver(self._deliver, maximum, prefix)
+        self.messages = 0
+        self.bytes = 0
+        self.peer_header: dict[str, str] = {}
+        self.writable = self._writable  # type: ignore[method-assign]
+
+    def _writable(self) -> memoryview:
+        return self.frames.writable() if self.state == OPEN else memoryview(self._room)
+
+    def received(self, count: int, now: float) -> None:
+        if self.state == OPEN:
+            try:
+                self.frames.received(count)
+            except ProtocolError as error:
+                self.fault(error, now)
+        else:
+            self.receive_data(memoryview(self._room)[:count], now)
+
+    def receive_data(self, data: "bytes | memoryview", now: float) -> None:
+        try:
+            if self.state == OPEN:
+                self.frames.feed(data)
+                return
+            fields = self._take_header(data, now)
+            if fields is None:
+                return
+            self.peer_header = fields
+            self.header_received(fields, now)
+            if self.state == OPEN:
+                # From here on the shell receives into the frame buffer itself, so bind past the state check.
+                self.writable = self.frames.writable  # type: ignore[method-assign]
+                if self._input:
+                    rest, self._input = self._input, bytearray()
+                    self.frames.feed(rest)
+        except ProtocolError as error:
+            self.fault(error, now)
+
+    def header_received(self, fields: "dict[str, str]", now: float) -> None:
+        raise NotImplementedError
+
+    def fault(self, error: RosletError, now: float) -> None:
+        """The peer broke the protocol."""
+        self.fail(str(error), now)
+
+    def _deliver(self, view: memoryview, start: int, end: int) -> None:
+        raise NotImplementedError
+
+    def lost(self, reason: str, now: float) -> None:
+        if self.state == OPEN and self.frames.pending:
+            reason += " within a frame (%d bytes of it had come)" % self.frames.pending
+        super().lost(reason, now)
+
+
+class SubscriberLink(FrameLink):
+    """Our subscription's connection to one publisher. Each frame goes to the subscription's sink at once."""
+
+    user = False
+
+    def __init__(
+        self, engine: "Engine", subscription: "Subscription", uri: str, address: "tuple[str, int]", now: float
+    ) -> None:
+        super().__init__(subscription.max_frame)
+        self.engine = engine
+        self.subscription = subscription
+        self.uri = uri
+        self.address = address
+        self.connection_id = engine.next_connection_id()
+        self._deadline = now + HANDSHAKE_TIMEOUT
+
+    def connected(self, now: float) -> None:
+        self.state = HANDSHAKE
+        self._outgoing.append(emit_header(self.subscription.header(self.engine.name)))
+
+    def header_received(self, fields: "dict[str, str]", now: float) -> None:
+        if "error" in fields:
+            raise ProtocolError("refused-by-peer", fields["error"])
+        require(fields, ("md5sum", "type"))
+        ours = self.subscription
+        if ours.md5sum != "*" and fields["md5sum"] not in ("*", ours.md5sum):
+            raise ProtocolError(
+                "md5sum-mismatch",
+                "%s: the publisher sends %s with md5sum %s, we expect %s with %s"
+                % (ours.topic, fields["type"], fields["md5sum"], ours.type, ours.md5sum),
+            )
+        self.state = OPEN
+        self.user = True
+        ours.link_opened(self, now)
+
+    def _deliver(self, view: memoryview, start: int, end: int) -> None:
+        self.messages += 1
+        self.bytes += end - start
+        self.subscription.sink(view, start, end, self)
+
+    def lost(self, reason: str, now: float) -> None:
+        super().lost(reason, now)
+        self.subscription.link_lost(self, now)
+
+
+class PublisherLink(FrameLink):
+    """One subscriber of our publication. What it sends after its header is read and ignored."""
+
+    def __init__(self, engine: "Engine", publication: "Publication", fields: "dict[str, str]", depth: int) -> None:
+        super().__init__()
+        self.engine = engine
+        self.publication = publication
+        self.peer_header = fields
+        self.callerid = fields.get("callerid", "")
+        self.connection_id = engine.next_connection_id()
+        self.queue = SendQueue(depth)
+        self.state = OPEN
+
+    def receive_data(self, data: "bytes | memoryview", now: float) -> None:
+        return
+
+    def received(self, count: int, now: float) -> None:
+        return
+
+    def _writable(self) -> memoryview:
+        return memoryview(self._room)
+
+    def lost(self, reason: str, now: float) -> None:
+        super().lost(reason, now)
+        self.publication.link_lost(self, now)
+
+
+class ServiceServerLink(FrameLink):
+    """One client of our service. Requests are answered in their order; `user`, because a handler is user code."""
+
+    def __init__(self, engine: "Engine", offer: "ServiceOffer", fields: "dict[str, str]") -> None:
+        super().__init__()
+        self.engine = engine
+        self.offer = offer
+        self.peer_header = fields
+        self.callerid = fields.get("callerid", "")
+        self.persistent = fields.get("persistent", "0") in ("1", "true", "True")
+        self.connection_id = engine.next_connection_id()
+        self.state = OPEN
+        self.user = True
+
+    def _deliver(self, view: memoryview, start: int, end: int) -> None:
+        self.messages += 1
+        self.bytes += end - start
+        try:
+            body = self.offer.handler(view, start, end, self)
+            self._outgoing.append(b"\x01" + pack("<I", len(body)))
+            self._outgoing.append(body)
+        except ServiceFailed as error:
+            text = str(error).encode("utf-8")
+            self._outgoing.append(b"\x00" + pack("<I", len(text)) + text)
+        if not self.persistent:
+            self.closing = True
+
+    def lost(self, reason: str, now: float) -> None:
+        super().lost(reason, now)
+        self.offer.link_lost(self)
+
+
+class ServiceClientLink(FrameLink):
+    """Our connection to a service. Calls are answered in their order; `done(body, error)` is called once for each."""
+
+    def __init__(self, engine: "Engine", header: "dict[str, str]", address: "tuple[str, int]", now: float) -> None:
+        super().__init__(prefix=1)
+        self.engine = engine
+        self.header = header
+        self.address = address
+        self.persistent = header.get("persistent") == "1"
+        self._waiting: list[Callable[["bytes | None", "RosletError | None"], None]] = []
+        self._requests: list[bytes] = []
+        self._deadline = now + HANDSHAKE_TIMEOUT
+
+    def call(self, body: bytes, done: "Callable[[bytes | None, RosletError | None], None]") -> None:
+        """Send one request. After the link has closed, `done` is called with an error at once."""
+        if self.closing:
+            done(None, ServiceFailed(self.reason or "the connection is closed"))
+            return
+        self._waiting.append(done)
+        frame = pack("<I", len(body)) + body
+        if self.state == OPEN:
+            self._outgoing.append(frame)
+        else:
+            self._requests.append(frame)
+
+    def connected(self, now: float) -> None:
+        self.state = HANDSHAKE
+        self._outgoing.append(emit_header(self.header))
+
+    def header_received(self, fields: "dict[str, str]", now: float) -> None:
+        if "error" in fields:
+            self.refusal = fields["error"]
+            raise ProtocolError("refused-by-peer", fields["error"])
+        require(fields, ("md5sum",))
+        expected = self.header["md5sum"]
+        if expected != "*" and fields["md5sum"] not in ("*", expected):
+            raise ProtocolError("md5sum-mismatch", "the service has %s, we expect %s" % (fields["md5sum"], expected))
+        self.state = OPEN
+        self._outgoing.extend(self._requests)
+        self._requests = []
+
+    def _deliver(self, view: memoryview, start: int, end: int) -> None:
+        if not self._waiting:
+            raise ProtocolError("reply-without-call")
+        done = self._waiting.pop(0)
+        body = bytes(view[start:end])
+        if view[start - 5]:
+            done(body, None)
+        else:
+            done(None, ServiceFailed(str(body, "utf-8", "replace")))
+        if not self.persistent and not self._waiting:
+            self.closing = True
+
+    def fail(self, reason: str, now: float) -> None:
+        refused = self.state != OPEN
+        super().fail(reason, now)
+        self._fail_all(HandshakeRefused(reason) if refused else ServiceFailed(reason))
+
+    def lost(self, reason: str, now: float) -> None:
+        super().lost(reason, now)
+        self._fail_all(ServiceFailed("connection lost: " + reason))
+
+    def _fail_all(self, error: RosletError) -> None:
+        waiting, self._waiting = self._waiting, []
+        for done in waiting:
+            done(None, error)
+
+
+class IncomingLink(Machine):
+    """A connection that has come in on our TCPROS port. When its header is whole the engine says what it becomes:
+    then `successor` is the machine that takes over, fed with what followed the header."""
+
+    state = HANDSHAKE
+
+    def __init__(self, engine: "Engine", now: float) -> None:
+        super().__init__()
+        self.engine = engine
+        self.successor: "FrameLink | None" = None
+        self._deadline = now + HANDSHAKE_TIMEOUT
+
+    def receive_data(self, data: "bytes | memoryview", now: float) -> None:
+        if self.closing or self.successor is not None:
+            return
+        try:
+            fields = self._take_header(data, now)
+            if fields is None:
+                return
+            self.successor = self.engine.greet(fields, self._outgoing, now)
+            if self.successor is None:
+                self.closing = True
+            elif self._input:
+                self.successor.receive_data(bytes(self._input), now)
+        except ProtocolError as error:
+            self.engine.count("incoming: " + error.reason)
+            self._outgoing.append(emit_header({"error": str(error)}))
+            self.fail(str(error), now)
+
+    def lost(self, reason: str, now: float) -> None:
+        if self.successor is not None:
+            self.successor.lost(reason, now)
+        elif self._input or not self.closing:
+            self.engine.count("incoming: closed-before-header")
+        super().lost(reason, now)

@@ -1,0 +1,175 @@
+"""The slave API: what the master and other nodes may ask of a node. Every call answers `[code, text, value]`.
+
+Source: ROS 1 slave API. Runs on MicroPython.
+"""
+
+from roslet.engine.ros1.links import OPEN
+from roslet.engine.ros1.rpc import dispatch
+from roslet.errors import ProtocolError
+from roslet.wire.tcpros import parse_header
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from roslet.engine.ros1.engine import Engine
+
+SUCCESS = 1
+FAILURE = 0
+ERROR = -1
+
+# The largest datagram that a subscriber may ask for, and the smallest that carries a block.
+MAX_DATAGRAM = 65507
+MIN_DATAGRAM = 64
+
+
+class Slave:
+    """Answers the slave API for one engine."""
+
+    def __init__(self, engine: "Engine") -> None:
+        self.engine = engine
+        self._now = 0.0
+        self.methods = {
+            "getBusStats": self.get_bus_stats,
+            "getBusInfo": self.get_bus_info,
+            "getMasterUri": self.get_master_uri,
+            "getName": self.get_name,
+            "shutdown": self.shutdown,
+            "getPid": self.get_pid,
+            "getSubscriptions": self.get_subscriptions,
+            "getPublications": self.get_publications,
+            "paramUpdate": self.param_update,
+            "publisherUpdate": self.publisher_update,
+            "requestTopic": self.request_topic,
+        }
+
+    def dispatch(self, method: str, params: "list[object]", now: float) -> "list[object]":
+        self._now = now
+        return dispatch(self.methods, method, params)
+
+    def get_bus_stats(self, caller: str) -> "list[object]":
+        engine = self.engine
+        published: list[object] = []
+        for publication in engine.publications.values():
+            links = [[link.connection_id, link.bytes, link.messages, not link.closing] for link in publication.links]
+            published.append([publication.topic, sum([link.bytes for link in publication.links]), links])
+        subscribed: list[object] = []
+        for topic, entries in engine.subscriptions.items():
+            rows: list[object] = []
+            for subscription in entries:
+                for link in subscription.links.values():
+                    rows.append([link.connection_id, link.bytes, -1, not link.closing])
+            subscribed.append([topic, rows])
+        calls = sum([link.messages for offer in engine.services.values() for link in offer.links])
+        size = sum([link.bytes for offer in engine.services.values() for link in offer.links])
+        return [SUCCESS, "bus stats", [published, subscribed, [calls, size, 0]]]
+
+    def get_bus_info(self, caller: str) -> "list[object]":
+        rows: list[object] = []
+        engine = self.engine
+        for publication in engine.publications.values():
+            for link in publication.links:
+                rows.append([link.connection_id, link.callerid, "o", "TCPROS", publication.topic, True, _peer(link)])
+            for sender in publication.senders:
+                rows.append(
+                    [sender.connection_id, sender.callerid, "o", "UDPROS", publication.topic, True, str(sender.address)]
+                )
+        for topic, entries in engine.subscriptions.items():
+            for subscription in entries:
+                for uri, incoming in subscription.links.items():
+                    rows.append(
+                        [
+                            incoming.connection_id,
+                            uri,
+                            "i",
+                            "UDPROS" if subscription.transport == "udp" else "TCPROS",
+                            topic,
+                            incoming.state == OPEN,
+                            _peer(incoming),
+                        ]
+                    )
+        return [SUCCESS, "bus info", rows]
+
+    def get_master_uri(self, caller: str) -> "list[object]":
+        return [SUCCESS, "master URI", self.engine.master_uri]
+
+    def get_name(self, caller: str) -> "list[object]":
+        return [SUCCESS, "node name", self.engine.name]
+
+    def shutdown(self, caller: str, reason: str = "") -> "list[object]":
+        self.engine.shutdown_requested("%s asks: %s" % (caller, reason) if reason else "%s asks" % caller)
+        return [SUCCESS, "shutting down", 0]
+
+    def get_pid(self, caller: str) -> "list[object]":
+        return [SUCCESS, "process id", self.engine.pid]
+
+    def get_subscriptions(self, caller: str) -> "list[object]":
+        rows = [[topic, entries[0].type] for topic, entries in self.engine.subscriptions.items()]
+        return [SUCCESS, "subscriptions", rows]
+
+    def get_publications(self, caller: str) -> "list[object]":
+        rows = [[publication.topic, publication.type] for publication in self.engine.publications.values()]
+        return [SUCCESS, "publications", rows]
+
+    def param_update(self, caller: str, key: str, value: object) -> "list[object]":
+        if not isinstance(key, str):
+            return [ERROR, "the key must be a string", 0]
+        self.engine.parameter_changed(key, value)
+        return [SUCCESS, "noted", 0]
+
+    def publisher_update(self, caller: str, topic: str, publishers: "list[object]") -> "list[object]":
+        if not isinstance(topic, str) or not isinstance(publishers, (list, tuple)):
+            return [ERROR, "expected a topic and a list of URIs", 0]
+        uris = [uri for uri in publishers if isinstance(uri, str)]
+        for subscription in list(self.engine.subscriptions.get(topic, [])):
+            subscription.update(uris, self._now)
+        return [SUCCESS, "noted", 0]
+
+    def request_topic(self, caller: str, topic: str, protocols: "list[object]") -> "list[object]":
+        engine = self.engine
+        publication = engine.publications.get(topic) if isinstance(topic, str) else None
+        if publication is None:
+            engine.count("slave: unknown-topic")
+            return [FAILURE, "%s does not publish %s" % (engine.name, topic), 0]
+        if not isinstance(protocols, (list, tuple)):
+            return [ERROR, "expected a list of protocols", 0]
+        for protocol in protocols:
+            if not isinstance(protocol, (list, tuple)) or not protocol:
+                continue
+            if protocol[0] == "TCPROS":
+                return [SUCCESS, "ready", ["TCPROS", engine.host, engine.tcpros_port]]
+            if protocol[0] == "UDPROS" and engine.udp is not None:
+                return self._request_udp(publication, list(protocol))
+        return [FAILURE, "no supported protocol among those offered", []]
+
+    def _request_udp(self, publication: "object", protocol: "list[object]") -> "list[object]":
+        engine = self.engine
+        if len(protocol) != 5:
+            return [ERROR, "UDPROS takes a header, host, port and datagram size", 0]
+        _, header, host, port, size = protocol
+        if (
+            not isinstance(header, (bytes, bytearray))
+            or not isinstance(host, str)
+            or not isinstance(port, int)
+            or not isinstance(size, int)
+            or not 0 < port < 65536
+            or size < MIN_DATAGRAM
+        ):
+            return [ERROR, "UDPROS parameters of a wrong type or range", 0]
+        try:
+            fields = parse_header(header)
+        except ProtocolError as error:
+            return [ERROR, str(error), 0]
+        refusal = publication.accepts(fields)  # type: ignore[attr-defined]
+        if refusal:
+            return [FAILURE, refusal, 0]
+        size = min(size, MAX_DATAGRAM)
+        sender = engine.add_udp_sender(publication, fields, host, port, size)  # type: ignore[arg-type]
+        return [
+            SUCCESS,
+            "ready",
+            ["UDPROS", engine.host, engine.udp.port, sender.connection_id, size, sender.header()],  # type: ignore[union-attr,attr-defined]
+        ]
+
+
+def _peer(link: object) -> str:
+    channel = getattr(link, "channel", None)
+    return str(getattr(channel, "description", "")) if channel is not None else ""

@@ -1,0 +1,397 @@
+"""Sockets and the clock for CPython: one loop a process, two sets of descriptors.
+
+*Control* descriptors (RPC, handshakes, subscribers of our topics, service replies) are always served: by whoever spins, or
+by one background thread. *User* descriptors (topics we subscribe, service requests) run user code and are read only
+inside `spin`; until then their bytes wait in the kernel and the sender feels it.
+"""
+
+from __future__ import annotations
+
+import errno
+import heapq
+import os
+import select
+import socket
+import sys
+import threading
+import traceback
+from collections import deque
+from time import monotonic, sleep
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    Handler = Callable[[int], None]
+
+if hasattr(select, "epoll"):
+    READ, WRITE, GONE = select.EPOLLIN, select.EPOLLOUT, select.EPOLLERR | select.EPOLLHUP
+    _SCALE = 1.0  # epoll takes seconds
+else:  # pragma: no cover - other systems than Linux
+    READ, WRITE, GONE = select.POLLIN, select.POLLOUT, select.POLLERR | select.POLLHUP
+    _SCALE = 1000.0  # poll takes milliseconds
+
+# The longest sleep of an idle loop: bounds the harm of a wake-up that got lost. Seconds.
+MAX_SLEEP = 60.0
+# Seconds the background thread waits after a spin before it takes the loop back.
+LINGER = 0.005
+
+
+def _poller() -> Any:
+    return select.epoll() if hasattr(select, "epoll") else select.poll()
+
+
+class Timer:
+    """One call at a time in the future; `cancel()` forgets it."""
+
+    __slots__ = ("function", "when")
+
+    def __init__(self, when: float, function: Callable[[], None] | None) -> None:
+        self.when = when
+        self.function = function
+
+    def cancel(self) -> None:
+        self.function = None
+
+
+class _Timers:
+    def __init__(self) -> None:
+        self._heap: list[tuple[float, int, Timer]] = []
+        self._serial = 0
+
+    def add(self, timer: Timer) -> None:
+        self._serial += 1
+        heapq.heappush(self._heap, (timer.when, self._serial, timer))
+
+    def deadline(self) -> float | None:
+        heap = self._heap
+        while heap and heap[0][2].function is None:
+            heapq.heappop(heap)
+        return heap[0][0] if heap else None
+
+    def pop_due(self, now: float) -> Callable[[], None] | None:
+        heap = self._heap
+        while heap and (heap[0][0] <= now or heap[0][2].function is None):
+            function = heapq.heappop(heap)[2].function
+            if function is not None:
+                return function
+        return None
+
+
+class Reactor:
+    """The loop. Any thread may call any method; `lock` guards control state and is never held while user code runs."""
+
+    def __init__(self) -> None:
+        self.lock = threading.RLock()
+        self._control = _poller()
+        self._all = _poller()
+        self._handlers: dict[int, tuple[Handler, bool]] = {}
+        self._timers = _Timers()
+        self._user_timers = _Timers()
+        self._soon: deque[Callable[[], None]] = deque()
+        self._user_soon: deque[Callable[[], None]] = deque()
+        self._turn = threading.Lock()
+        self._changed = threading.Condition(threading.Lock())
+        self._waiting = 0
+        self._lent = False  # whether the background thread has ever handed the loop to a spinner
+        self._owner = 0  # the thread that has the turn
+        self._spinners = 0
+        self._idle = threading.Event()
+        self._idle.set()
+        self._thread: threading.Thread | None = None
+        self._error: BaseException | None = None
+        self._stopped = False
+        self._wake_read, self._wake_write = os.pipe()
+        os.set_blocking(self._wake_read, False)
+        os.set_blocking(self._wake_write, False)
+        self._awake = False
+        self.register(self._wake_read, self._woken)
+
+    # -- registration
+
+    def register(self, fd: int, handler: Handler, events: int = READ, user: bool = False) -> None:
+        """Call `handler(events)` when `fd` is ready. `user`: only while somebody spins, and without `lock` held."""
+        self._handlers[fd] = (handler, user)
+        self._all.register(fd, events)
+        if not user:
+            self._control.register(fd, events)
+            self._ensure_thread()
+
+    def modify(self, fd: int, events: int) -> None:
+        self._all.modify(fd, events)
+        if not self._handlers[fd][1]:
+            self._control.modify(fd, events)
+
+    def unregister(self, fd: int) -> None:
+        entry = self._handlers.pop(fd, None)
+        if entry is not None:
+            self._all.unregister(fd)
+            if not entry[1]:
+                self._control.unregister(fd)
+
+    def call_at(self, when: float, function: Callable[[], None], user: bool = False) -> Timer:
+        """Call `function` at `when` (`now()`'s seconds), control ones with `lock` held."""
+        timer = Timer(when, function)
+        with self.lock:
+            timers = self._user_timers if user else self._timers
+            soonest = timers.deadline()
+            timers.add(timer)
+        if soonest is None or when < soonest:
+            self.wake()
+        return timer
+
+    def call_soon(self, function: Callable[[], None], user: bool = False) -> None:
+        """Call `function` in the loop's next turn."""
+        (self._user_soon if user else self._soon).append(function)
+        self.wake()
+
+    def now(self) -> float:
+        return monotonic()
+
+    def wake(self) -> None:
+        """End the loop's present sleep, unless the caller is the loop."""
+        if not self._awake and self._owner != threading.get_ident():
+            self._awake = True
+            try:
+                os.write(self._wake_write, b"\0")
+            except BlockingIOError:
+                pass
+
+    def _woken(self, events: int) -> None:
+        self._awake = False
+        try:
+            os.read(self._wake_read, 64)
+        except BlockingIOError:
+            pass
+
+    # -- running
+
+    @property
+    def in_loop(self) -> bool:
+        """Whether the calling thread is the one that runs the loop now."""
+        return self._owner == threading.get_ident()
+
+    def run_until(self, predicate: Callable[[], object], timeout: float | None = None, user: bool = True) -> bool:
+        """Serve until `predicate()` is true or `timeout` seconds have passed; says which (true: the predicate).
+
+        With `user` false only control traffic is served. Called from within a callback it serves control traffic in the
+        same way, so that a callback may wait for a service. An exception that a callback raised is raised here.
+        """
+        if predicate():
+            return True
+        if timeout is not None and timeout <= 0 and not user:
+            return False
+        end = None if timeout is None else monotonic() + timeout
+        if self._owner == threading.get_ident():
+            return self._loop(predicate, end, False)
+        with self.lock:
+            self._spinners += 1
+            self._idle.clear()
+        self.wake()
+        try:
+            while not self._turn.acquire(False):
+                # Somebody else runs the loop: it tells when it has done something, and when it gives up the turn.
+                with self._changed:
+                    if predicate():
+                        return True
+                    self._waiting += 1
+                    self._changed.wait(self._left(end, 0.05))
+                    self._waiting -= 1
+                if end is not None and monotonic() >= end:
+                    return bool(predicate())
+            self._owner = threading.get_ident()
+            try:
+                return self._loop(predicate, end, user)
+            finally:
+                self._give_up_turn()
+        finally:
+            with self.lock:
+                self._spinners -= 1
+                if not self._spinners:
+                    self._idle.set()
+
+    def _give_up_turn(self) -> None:
+        self._owner = 0
+        self._turn.release()
+        if self._waiting:
+            with self._changed:
+                self._changed.notify_all()
+
+    @staticmethod
+    def _left(end: float | None, most: float) -> float:
+        return most if end is None else max(0.0, min(most, end - monotonic()))
+
+    def _loop(self, predicate: Callable[[], object], end: float | None, user: bool) -> bool:
+        turn = self._run_turn
+        while True:
+            turn(end, user)
+            if self._error is not None:
+                error, self._error = self._error, None
+                raise error
+            if predicate():
+                return True
+            if end is not None and monotonic() >= end:
+                return False
+
+    def _run_turn(self, end: float | None, user: bool) -> None:
+        """One sleep and what follows it."""
+        soonest = self._timers.deadline()
+        if user:
+            other = self._user_timers.deadline()
+            if other is not None and (soonest is None or other < soonest):
+                soonest = other
+        if self._soon or (user and self._user_soon):
+            pause = 0.0
+        elif soonest is None and end is None:
+            pause = MAX_SLEEP
+        else:
+            if soonest is None or (end is not None and end < soonest):
+                soonest = end
+            pause = soonest - monotonic()  # type: ignore[operator]
+            if pause < 0.0:
+                pause = 0.0
+            elif pause > MAX_SLEEP:
+                pause = MAX_SLEEP
+        handlers = self._handlers
+        for fd, events in (self._all if user else self._control).poll(pause * _SCALE):
+            entry = handlers.get(fd)
+            if entry is None:
+                continue
+            if entry[1]:
+                entry[0](events)
+            else:
+                with self.lock:
+                    entry[0](events)
+        if self._soon:
+            self._run_soon(self._soon, True)
+        if user and self._user_soon:
+            self._run_soon(self._user_soon, False)
+        if soonest is not None:
+            now = monotonic()
+            if now >= soonest:
+                self._run_timers(now, user)
+        if self._waiting:
+            with self._changed:
+                self._changed.notify_all()
+
+    def _run_soon(self, queue: deque[Callable[[], None]], locked: bool) -> None:
+        for _ in range(len(queue)):
+            function = queue.popleft()
+            if locked:
+                with self.lock:
+                    function()
+            else:
+                self.guard(function)
+
+    def _run_timers(self, now: float, user: bool) -> None:
+        while True:
+            with self.lock:
+                function = self._timers.pop_due(now)
+                if function is None:
+                    break
+                function()
+        while user:
+            with self.lock:
+                function = self._user_timers.pop_due(now)
+            if function is None:
+                break
+            self.guard(function)
+
+    def guard(self, function: Callable[..., object], *arguments: object) -> None:
+        """Run user code; what it raises comes out of `run_until`, or is printed where nobody waits there."""
+        try:
+            function(*arguments)
+        except Exception as error:
+            self.report(error)
+
+    def report(self, error: Exception) -> None:
+        """Note an exception of user code: the first one leaves the loop at the end of this turn."""
+        if self._error is None:
+            self._error = error
+        else:
+            traceback.print_exception(error, file=sys.stderr)
+
+    # -- the background thread
+
+    def _ensure_thread(self) -> None:
+        if self._thread is None and len(self._handlers) > 1:
+            self._thread = threading.Thread(target=self._background, name="roslet", daemon=True)
+            self._thread.start()
+
+    def _background(self) -> None:
+        while not self._stopped:
+            self._idle.wait()
+            if self._lent:
+                # Somebody has just stopped spinning and may be back at once: a change of threads costs more than a turn.
+                sleep(LINGER)
+                if self._spinners:
+                    continue
+            self._turn.acquire()
+            self._owner = threading.get_ident()
+            try:
+                while not self._spinners and not self._stopped:
+                    self._run_turn(None, False)
+                    if self._error is not None:
+                        error, self._error = self._error, None
+                        traceback.print_exception(error, file=sys.stderr)
+            finally:
+                self._lent = True
+                self._give_up_turn()
+
+    def close(self) -> None:
+        """End the background thread and close the loop's own descriptors. The loop must not be used after."""
+        self._stopped = True
+        self._idle.set()
+        self.wake()
+        thread = self._thread
+        if thread is not None and thread is not threading.current_thread():
+            thread.join(2.0)
+        for poller in (self._control, self._all):
+            if hasattr(poller, "close"):
+                poller.close()
+        os.close(self._wake_read)
+        os.close(self._wake_write)
+
+
+_reactor: Reactor | None = None
+_reactor_pid = 0
+_reactor_lock = threading.Lock()
+
+
+def reactor() -> Reactor:
+    """The process's loop, made at the first call and made anew in a forked child."""
+    global _reactor, _reactor_pid
+    with _reactor_lock:
+        if _reactor is None or _reactor_pid != os.getpid():
+            _reactor = Reactor()
+            _reactor_pid = os.getpid()
+        return _reactor
+
+
+def listen(host: str, port: int = 0, backlog: int = 128) -> socket.socket:
+    """A listening, non-blocking TCP socket."""
+    sock = socket.socket()
+    try:
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        sock.bind((host, port))
+        sock.listen(backlog)
+        sock.setblocking(False)
+    except OSError:
+        sock.close()
+        raise
+    return sock
+
+
+def tune(sock: socket.socket) -> None:
+    """No delay for small messages, and a dead peer is noticed within half a minute."""
+    sock.setblocking(False)
+    sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    for name, value in (("TCP_KEEPIDLE", 10), ("TCP_KEEPINTVL", 4), ("TCP_KEEPCNT", 4), ("TCP_USER_TIMEOUT", 26000)):
+        option = getattr(socket, name, None)
+        if option is not None:
+            sock.setsockopt(socket.IPPROTO_TCP, option, value)
+
+
+# accept() failures that mean "no descriptors left": wait instead of spinning.
+EXHAUSTED = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)

@@ -1,0 +1,1 @@
+"""Bytes to values and back: one module a format. Imports errors, names and record only. Runs on MicroPython."""
