@@ -148,6 +148,15 @@ class Reactor:
     def now(self) -> float:
         return monotonic()
 
+    def fileno(self) -> int:
+        """A descriptor that is readable when a turn would find something to do; -1 where there is none."""
+        return int(self._all.fileno()) if hasattr(self._all, "fileno") else -1
+
+    def user_deadline(self) -> float | None:
+        """When the next timer of a user is due."""
+        with self.lock:
+            return self._user_timers.deadline()
+
     def wake(self) -> None:
         """End the loop's present sleep, unless the caller is the loop."""
         if not self._awake and self._owner != threading.get_ident():
@@ -171,7 +180,9 @@ class Reactor:
         """Whether the calling thread is the one that runs the loop now."""
         return self._owner == threading.get_ident()
 
-    def run_until(self, predicate: Callable[[], object], timeout: float | None = None, user: bool = True) -> bool:
+    def run_until(
+        self, predicate: Callable[[], object], timeout: float | None = None, user: bool = True
+    ) -> bool:
         """Serve until `predicate()` is true or `timeout` seconds have passed; says which (true: the predicate).
 
         With `user` false only control traffic is served. Called from within a callback it serves control traffic in the
@@ -216,6 +227,16 @@ class Reactor:
         if self._waiting:
             with self._changed:
                 self._changed.notify_all()
+
+    def run_turns(self, count: int, timeout: float) -> None:
+        """Serve for `count` turns of the loop, the first of which may wait `timeout` seconds for something to do."""
+        left = [count]
+
+        def turned() -> bool:
+            left[0] -= 1
+            return left[0] < 0
+
+        self.run_until(turned, timeout)
 
     @staticmethod
     def _left(end: float | None, most: float) -> float:
@@ -387,7 +408,12 @@ def tune(sock: socket.socket) -> None:
     sock.setblocking(False)
     sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
-    for name, value in (("TCP_KEEPIDLE", 10), ("TCP_KEEPINTVL", 4), ("TCP_KEEPCNT", 4), ("TCP_USER_TIMEOUT", 26000)):
+    for name, value in (
+        ("TCP_KEEPIDLE", 10),
+        ("TCP_KEEPINTVL", 4),
+        ("TCP_KEEPCNT", 4),
+        ("TCP_USER_TIMEOUT", 26000),
+    ):
         option = getattr(socket, name, None)
         if option is not None:
             sock.setsockopt(socket.IPPROTO_TCP, option, value)

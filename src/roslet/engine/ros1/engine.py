@@ -6,9 +6,16 @@ send or want to close, feeds what arrives into the machines, calls `pump(now)` a
 """
 
 from roslet.engine.ros1.graph import Publication, ServiceOffer, Subscription
-from roslet.engine.ros1.links import FrameLink, IncomingLink, Machine, PublisherLink, ServiceClientLink, ServiceServerLink
+from roslet.engine.ros1.links import (
+    FrameLink,
+    IncomingLink,
+    Machine,
+    PublisherLink,
+    ServiceClientLink,
+    ServiceServerLink,
+)
 from roslet.engine.ros1.registration import Registrations
-from roslet.engine.ros1.rpc import CallReceived, ReplyReceived, RpcClient, RpcServer
+from roslet.engine.ros1.rpc import ReplyReceived, RpcClient, RpcServer, answer_calls, unpack_reply
 from roslet.engine.ros1.slave import Slave
 from roslet.engine.ros1.udp import UdpReceiver, UdpSender
 from roslet.errors import Fault, InvalidName, ProtocolError, RosletError
@@ -51,11 +58,11 @@ class Engine:
         self.slave = Slave(self)
         self.counters: dict[str, int] = {}
         self.parameters: dict[str, object] = {}  # subscribed ones, as the master last told
-        self.shutdown_reason: "str | None" = None
-        self.udp: "object | None" = None  # the shell's datagram socket: host, port, send(data, address)
-        self.on_note: "Callable[[str], None] | None" = None
-        self.on_parameter: "Callable[[str, object], None] | None" = None
-        self.on_shutdown: "Callable[[str], None] | None" = None
+        self.shutdown_reason: str | None = None
+        self.udp: object | None = None  # the shell's datagram socket: host, port, send(data, address)
+        self.on_note: Callable[[str], None] | None = None
+        self.on_parameter: Callable[[str, object], None] | None = None
+        self.on_shutdown: Callable[[str], None] | None = None
         self._ids = 0
         self._new: list[Machine | RpcClient] = []
         self._touched: list[Machine | RpcClient] = []
@@ -129,13 +136,17 @@ class Engine:
 
     # -- calls out
 
-    def call_master(self, method: str, arguments: "list[object] | list[str]", done: "Answered", now: float) -> None:
+    def call_master(
+        self, method: str, arguments: "list[object] | list[str]", done: "Answered", now: float
+    ) -> None:
         """Call the master; `done(value, error, now)` is called once, with the third item of its reply."""
         call_id = self._master.call(method, list(arguments), now)
         self._master_calls[call_id] = done
         self.touch(self._master)
 
-    def call_slave(self, uri: str, method: str, arguments: "list[object]", done: "Answered", now: float) -> None:
+    def call_slave(
+        self, uri: str, method: str, arguments: "list[object]", done: "Answered", now: float
+    ) -> None:
         """Call another node's slave API, on a connection of its own."""
         try:
             host, port = parse_host_port(uri)
@@ -163,18 +174,16 @@ class Engine:
                 event = client.next_event()
                 if event is not None:
                     self._slave_calls.remove(entry)
-                    client.closing = True
+                    client.close(now)
                     self.touch(client)
                     _hand(event, done, now)
+                elif client.wants_connection:
+                    self.open(client)
 
     def rpc_pump(self, server: RpcServer, now: float) -> None:
         """Answer the calls that have come in on one connection."""
-        while True:
-            event = server.next_event()
-            if event is None:
-                return
-            if isinstance(event, CallReceived):
-                server.reply(event.call_id, self.slave.dispatch(event.method, event.params, now))
+        self.slave.now = now
+        answer_calls(server, self.slave.methods, now)
 
     # -- the node's graph entries
 
@@ -205,9 +214,13 @@ class Engine:
         now: float,
         max_frame: int = MAX_FRAME,
         transport: str = "tcp",
+        copies: bool = False,
+        background: bool = False,
     ) -> Subscription:
         """Several subscriptions of one topic have a connection each; the master hears of the topic once for each."""
-        subscription = Subscription(self, topic, type_name, md5sum, definition, sink, max_frame, transport)
+        subscription = Subscription(
+            self, topic, type_name, md5sum, definition, sink, max_frame, transport, copies, background
+        )
         self.subscriptions.setdefault(topic, []).append(subscription)
         self.registrations.add(subscription, now)
         return subscription
@@ -305,16 +318,18 @@ class Engine:
             self.note(refusal)
             raise ProtocolError("type-mismatch", refusal)
         outgoing.append(emit_header(publication.header()))
-        link = PublisherLink(self, publication, fields, publication.depth)
-        publication.add(link)
-        return link
+        return PublisherLink(self, publication, fields, publication.depth)
 
     def _greet_client(self, fields: "dict[str, str]", outgoing: "list[bytes]") -> "FrameLink | None":
         offer = self.services.get(fields["service"])
         if offer is None:
             raise ProtocolError("unknown-service", "%s does not offer %s" % (self.name, fields["service"]))
         if fields["md5sum"] not in ("*", offer.md5sum):
-            text = "service %s has md5sum %s, the client expects %s" % (offer.topic, offer.md5sum, fields["md5sum"])
+            text = "service %s has md5sum %s, the client expects %s" % (
+                offer.topic,
+                offer.md5sum,
+                fields["md5sum"],
+            )
             raise ProtocolError("md5sum-mismatch", text)
         outgoing.append(emit_header(offer.header()))
         if fields.get("probe") == "1":
@@ -328,15 +343,18 @@ class Engine:
     def udp_request(self, subscription: Subscription) -> "list[object]":
         return UdpReceiver.request(self, subscription)
 
-    def udp_accepted(self, subscription: Subscription, uri: str, answer: "list[object]", now: float) -> UdpReceiver:
+    def udp_accepted(
+        self, subscription: Subscription, uri: str, answer: "list[object]", now: float
+    ) -> UdpReceiver:
         receiver = UdpReceiver.accepted(self, subscription, uri, answer)
         self._receivers[receiver.connection_id] = receiver
         subscription.link_opened(receiver, now)
         return receiver
 
-    def add_udp_sender(self, publication: Publication, fields: "dict[str, str]", host: str, port: int, size: int) -> UdpSender:
+    def add_udp_sender(
+        self, publication: Publication, fields: "dict[str, str]", host: str, port: int, size: int
+    ) -> UdpSender:
         sender = UdpSender(self, publication, fields, (host, port), size)
-        publication.senders = publication.senders + (sender,)
         publication.opened(sender)
         return sender
 
@@ -373,13 +391,12 @@ def _hand(event: object, done: "Answered", now: float) -> None:
     if not isinstance(event, ReplyReceived):
         done(None, getattr(event, "error", RosletError("call failed")), now)
         return
-    reply = event.value
-    if not isinstance(reply, (list, tuple)) or len(reply) != 3 or not isinstance(reply[0], int):
-        done(None, ProtocolError("reply-not-a-triple", repr(reply)[:200]), now)
-    elif reply[0] != 1:
-        done(None, Fault(reply[0], str(reply[1])), now)
-    else:
-        done(reply[2], None, now)
+    try:
+        value = unpack_reply(event.value)
+    except (Fault, ProtocolError) as error:
+        done(None, error, now)
+        return
+    done(value, None, now)
 
 
 def _ignore(value: object, error: "Exception | None", now: float) -> None:

@@ -27,7 +27,8 @@ class FrameReceiver:
     """See the module. `maximum` bounds a frame's body in bytes; a longer one raises ProtocolError frame-too-large.
 
     `prefix` bytes stand before each length (1 for service replies, else 0); `deliver` gets the start of the body and
-    finds the prefix at `start - 4 - prefix`.
+    finds the prefix at `start - 4 - prefix`. With `copies` each small frame is delivered in a buffer of its own, for
+    types whose messages hold views: one small message that is kept must not keep a whole chunk alive.
     """
 
     def __init__(
@@ -36,8 +37,10 @@ class FrameReceiver:
         maximum: int = MAX_FRAME,
         prefix: int = 0,
         chunk: int = CHUNK,
+        copies: bool = False,
     ) -> None:
         self.deliver = deliver
+        self.copies = copies
         self.maximum = maximum
         self._head = 4 + prefix
         self._prefix = prefix
@@ -45,10 +48,10 @@ class FrameReceiver:
         self._chunk_view = memoryview(self._chunk)
         self._start = 0
         self._end = 0
-        self._large: "bytearray | None" = None  # the buffer of the large frame being received
+        self._large: bytearray | None = None  # the buffer of the large frame being received
         self._large_size = 0  # bytes of that frame, head included
         self._large_end = 0  # bytes of it received
-        self._spare: "bytearray | None" = None
+        self._spare: bytearray | None = None
 
     @property
     def pending(self) -> int:
@@ -82,13 +85,18 @@ class FrameReceiver:
             body = start + head
             if size > end - body:
                 if size > self.maximum:
-                    raise ProtocolError("frame-too-large", "%d bytes; at most %d are accepted" % (size, self.maximum))
+                    raise ProtocolError(
+                        "frame-too-large", "%d bytes; at most %d are accepted" % (size, self.maximum)
+                    )
                 if head + size > len(view):
                     self._begin_large(start, end, head + size)
                     return
                 break
             self._start = start = body + size
-            self.deliver(view, body, start)
+            if self.copies:
+                self.deliver(memoryview(bytearray(view[body:start])), 0, size)
+            else:
+                self.deliver(view, body, start)
         if start == end:
             self._start = self._end = 0
         elif len(view) - start < CHUNK // 4 or end == len(view):

@@ -24,7 +24,14 @@ class Publication:
     kind = "Publisher"
 
     def __init__(
-        self, engine: "Engine", topic: str, type_name: str, md5sum: str, definition: str, latching: bool, depth: int
+        self,
+        engine: "Engine",
+        topic: str,
+        type_name: str,
+        md5sum: str,
+        definition: str,
+        latching: bool,
+        depth: int,
     ) -> None:
         self.engine = engine
         self.topic = topic
@@ -35,7 +42,8 @@ class Publication:
         self.depth = depth
         self.links: tuple[PublisherLink, ...] = ()
         self.senders: tuple[UdpSender, ...] = ()
-        self.on_link: "Callable[[PublisherLink | UdpSender, bool], None] | None" = None
+        self.on_link: Callable[[PublisherLink | UdpSender, bool], None] | None = None
+        self.lock: object | None = None  # the shell's: guards the links' queues where there are threads
         self.dropped = 0
 
     def header(self) -> "dict[str, str]":
@@ -52,22 +60,27 @@ class Publication:
         """Empty where a subscriber with this header may have the topic, otherwise the sentence that refuses it."""
         md5sum = fields.get("md5sum", "*")
         if md5sum not in ("*", self.md5sum):
-            return "Topic %s: the subscriber %s expects %s with md5sum %s, this publisher has %s with md5sum %s" % (
-                self.topic,
-                fields.get("callerid", "(unnamed)"),
-                fields.get("type", "(no type)"),
-                md5sum,
-                self.type,
-                self.md5sum,
+            return (
+                "Topic %s: the subscriber %s expects %s with md5sum %s, this publisher has %s with md5sum %s"
+                % (
+                    self.topic,
+                    fields.get("callerid", "(unnamed)"),
+                    fields.get("type", "(no type)"),
+                    md5sum,
+                    self.type,
+                    self.md5sum,
+                )
             )
         if fields.get("type", "*") not in ("*", self.type):
             return "Topic %s has type %s; the subscriber expects %s" % (self.topic, self.type, fields["type"])
         return ""
 
-    def add(self, link: PublisherLink) -> None:
-        self.links = self.links + (link,)
-
     def opened(self, link: "PublisherLink | UdpSender") -> None:
+        """The link can carry messages from now on."""
+        if isinstance(link, PublisherLink):
+            self.links = self.links + (link,)
+        else:
+            self.senders = self.senders + (link,)
         if self.on_link is not None:
             self.on_link(link, True)
 
@@ -106,6 +119,8 @@ class Subscription:
         sink: "Callable[[memoryview, int, int, object], None]",
         max_frame: int = MAX_FRAME,
         transport: str = "tcp",
+        copies: bool = False,
+        background: bool = False,
     ) -> None:
         self.engine = engine
         self.topic = topic
@@ -115,9 +130,11 @@ class Subscription:
         self.sink = sink
         self.max_frame = max_frame
         self.transport = transport
+        self.copies = copies  # each small message in a buffer of its own
+        self.background = background  # the sink is no user code: serve it though nobody spins
         self.links: dict[str, SubscriberLink | UdpReceiver] = {}
         self.publishers: tuple[str, ...] = ()
-        self.on_link: "Callable[[object, bool], None] | None" = None
+        self.on_link: Callable[[object, bool], None] | None = None
         self._retry: dict[str, tuple[float, float]] = {}  # uri -> (when, the pause after that)
         self._asking: dict[str, int] = {}
         self.closed = False
@@ -176,7 +193,12 @@ class Subscription:
     def _connect(self, uri: str, value: object, now: float) -> None:
         if not isinstance(value, list) or not value:
             raise ProtocolError("no-common-transport", "%s offers no %s" % (uri, self.transport))
-        if value[0] == "TCPROS" and len(value) >= 3 and isinstance(value[1], str) and isinstance(value[2], int):
+        if (
+            value[0] == "TCPROS"
+            and len(value) >= 3
+            and isinstance(value[1], str)
+            and isinstance(value[2], int)
+        ):
             host, port = parse_host_port("rosrpc://%s:%d" % (value[1], value[2]))
             link: SubscriberLink | UdpReceiver = SubscriberLink(self.engine, self, uri, (host, port), now)
             self.engine.open(link)

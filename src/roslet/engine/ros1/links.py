@@ -45,7 +45,7 @@ class Machine:
         self._outgoing: list[bytes] = []
         self._input = bytearray()
         self._room = bytearray(4096)
-        self._deadline: "float | None" = None
+        self._deadline: float | None = None
 
     def connected(self, now: float) -> None:
         """The connection to `address` stands."""
@@ -84,6 +84,23 @@ class Machine:
         self.reason = self.reason or reason
         self.closing = True
 
+    def take_over(self, outgoing: bytes, rest: bytes) -> None:
+        """Begin where another machine left off: what it had yet to send, and what it had received and not used."""
+        if outgoing:
+            self._outgoing.insert(0, outgoing)
+        self._input.extend(rest)
+
+    def take_rest(self) -> bytes:
+        """What came behind the header. Where `user` is true the shell feeds it when user code may run."""
+        rest = bytes(self._input)
+        self._input = bytearray()
+        return rest
+
+    @property
+    def replies(self) -> bool:
+        """Whether there is something to send."""
+        return bool(self._outgoing)
+
     def _take_header(self, data: "bytes | memoryview", now: float) -> "dict[str, str] | None":
         """Gather the peer's header; None until it is whole. What follows it stays in `_input`."""
         self._input.extend(data)
@@ -103,9 +120,9 @@ class Machine:
 class FrameLink(Machine):
     """A connection that carries frames once both headers have passed."""
 
-    def __init__(self, maximum: int = MAX_FRAME, prefix: int = 0) -> None:
+    def __init__(self, maximum: int = MAX_FRAME, prefix: int = 0, copies: bool = False) -> None:
         super().__init__()
-        self.frames = FrameReceiver(self._deliver, maximum, prefix)
+        self.frames = FrameReceiver(self._deliver, maximum, prefix, copies=copies)
         self.messages = 0
         self.bytes = 0
         self.peer_header: dict[str, str] = {}
@@ -136,9 +153,8 @@ class FrameLink(Machine):
             if self.state == OPEN:
                 # From here on the shell receives into the frame buffer itself, so bind past the state check.
                 self.writable = self.frames.writable  # type: ignore[method-assign]
-                if self._input:
-                    rest, self._input = self._input, bytearray()
-                    self.frames.feed(rest)
+                if not self.user:
+                    self.frames.feed(self.take_rest())
         except ProtocolError as error:
             self.fault(error, now)
 
@@ -162,11 +178,12 @@ class SubscriberLink(FrameLink):
     """Our subscription's connection to one publisher. Each frame goes to the subscription's sink at once."""
 
     user = False
+    replies = False  # after the handshake a subscriber sends nothing
 
     def __init__(
         self, engine: "Engine", subscription: "Subscription", uri: str, address: "tuple[str, int]", now: float
     ) -> None:
-        super().__init__(subscription.max_frame)
+        super().__init__(subscription.max_frame, copies=subscription.copies)
         self.engine = engine
         self.subscription = subscription
         self.uri = uri
@@ -190,7 +207,7 @@ class SubscriberLink(FrameLink):
                 % (ours.topic, fields["type"], fields["md5sum"], ours.type, ours.md5sum),
             )
         self.state = OPEN
-        self.user = True
+        self.user = not ours.background
         ours.link_opened(self, now)
 
     def _deliver(self, view: memoryview, start: int, end: int) -> None:
@@ -206,7 +223,9 @@ class SubscriberLink(FrameLink):
 class PublisherLink(FrameLink):
     """One subscriber of our publication. What it sends after its header is read and ignored."""
 
-    def __init__(self, engine: "Engine", publication: "Publication", fields: "dict[str, str]", depth: int) -> None:
+    def __init__(
+        self, engine: "Engine", publication: "Publication", fields: "dict[str, str]", depth: int
+    ) -> None:
         super().__init__()
         self.engine = engine
         self.publication = publication
@@ -265,13 +284,15 @@ class ServiceServerLink(FrameLink):
 class ServiceClientLink(FrameLink):
     """Our connection to a service. Calls are answered in their order; `done(body, error)` is called once for each."""
 
-    def __init__(self, engine: "Engine", header: "dict[str, str]", address: "tuple[str, int]", now: float) -> None:
+    def __init__(
+        self, engine: "Engine", header: "dict[str, str]", address: "tuple[str, int]", now: float
+    ) -> None:
         super().__init__(prefix=1)
         self.engine = engine
         self.header = header
         self.address = address
         self.persistent = header.get("persistent") == "1"
-        self._waiting: list[Callable[["bytes | None", "RosletError | None"], None]] = []
+        self._waiting: list[Callable[[bytes | None, RosletError | None], None]] = []
         self._requests: list[bytes] = []
         self._deadline = now + HANDSHAKE_TIMEOUT
 
@@ -298,7 +319,9 @@ class ServiceClientLink(FrameLink):
         require(fields, ("md5sum",))
         expected = self.header["md5sum"]
         if expected != "*" and fields["md5sum"] not in ("*", expected):
-            raise ProtocolError("md5sum-mismatch", "the service has %s, we expect %s" % (fields["md5sum"], expected))
+            raise ProtocolError(
+                "md5sum-mismatch", "the service has %s, we expect %s" % (fields["md5sum"], expected)
+            )
         self.state = OPEN
         self._outgoing.extend(self._requests)
         self._requests = []
@@ -332,14 +355,14 @@ class ServiceClientLink(FrameLink):
 
 class IncomingLink(Machine):
     """A connection that has come in on our TCPROS port. When its header is whole the engine says what it becomes:
-    then `successor` is the machine that takes over, fed with what followed the header."""
+    then `successor` is the machine that takes over; the shell feeds it `take_rest()`."""
 
     state = HANDSHAKE
 
     def __init__(self, engine: "Engine", now: float) -> None:
         super().__init__()
         self.engine = engine
-        self.successor: "FrameLink | None" = None
+        self.successor: FrameLink | None = None
         self._deadline = now + HANDSHAKE_TIMEOUT
 
     def receive_data(self, data: "bytes | memoryview", now: float) -> None:
@@ -352,8 +375,6 @@ class IncomingLink(Machine):
             self.successor = self.engine.greet(fields, self._outgoing, now)
             if self.successor is None:
                 self.closing = True
-            elif self._input:
-                self.successor.receive_data(bytes(self._input), now)
         except ProtocolError as error:
             self.engine.count("incoming: " + error.reason)
             self._outgoing.append(emit_header({"error": str(error)}))

@@ -29,7 +29,7 @@ class Registrations:
         self.retry = retry
         self.entries: dict[Entry, int] = {}
         self.master_lost = False
-        self._next: "float | None" = None
+        self._next: float | None = None
         self._checking = False
 
     def add(self, entry: "Entry", now: float) -> None:

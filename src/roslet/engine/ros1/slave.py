@@ -4,7 +4,6 @@ Source: ROS 1 slave API. Runs on MicroPython.
 """
 
 from roslet.engine.ros1.links import OPEN
-from roslet.engine.ros1.rpc import dispatch
 from roslet.errors import ProtocolError
 from roslet.wire.tcpros import parse_header
 
@@ -26,30 +25,30 @@ class Slave:
 
     def __init__(self, engine: "Engine") -> None:
         self.engine = engine
-        self._now = 0.0
+        self.now = 0.0  # when the call that is being answered came
+        # Each method with the fewest and the most parameters it takes.
         self.methods = {
-            "getBusStats": self.get_bus_stats,
-            "getBusInfo": self.get_bus_info,
-            "getMasterUri": self.get_master_uri,
-            "getName": self.get_name,
-            "shutdown": self.shutdown,
-            "getPid": self.get_pid,
-            "getSubscriptions": self.get_subscriptions,
-            "getPublications": self.get_publications,
-            "paramUpdate": self.param_update,
-            "publisherUpdate": self.publisher_update,
-            "requestTopic": self.request_topic,
+            "getBusStats": (self.get_bus_stats, 1, 1),
+            "getBusInfo": (self.get_bus_info, 1, 1),
+            "getMasterUri": (self.get_master_uri, 1, 1),
+            "getName": (self.get_name, 1, 1),
+            "shutdown": (self.shutdown, 1, 2),
+            "getPid": (self.get_pid, 1, 1),
+            "getSubscriptions": (self.get_subscriptions, 1, 1),
+            "getPublications": (self.get_publications, 1, 1),
+            "paramUpdate": (self.param_update, 3, 3),
+            "publisherUpdate": (self.publisher_update, 3, 3),
+            "requestTopic": (self.request_topic, 3, 3),
         }
-
-    def dispatch(self, method: str, params: "list[object]", now: float) -> "list[object]":
-        self._now = now
-        return dispatch(self.methods, method, params)
 
     def get_bus_stats(self, caller: str) -> "list[object]":
         engine = self.engine
         published: list[object] = []
         for publication in engine.publications.values():
-            links = [[link.connection_id, link.bytes, link.messages, not link.closing] for link in publication.links]
+            links = [
+                [link.connection_id, link.bytes, link.messages, not link.closing]
+                for link in publication.links
+            ]
             published.append([publication.topic, sum([link.bytes for link in publication.links]), links])
         subscribed: list[object] = []
         for topic, entries in engine.subscriptions.items():
@@ -67,10 +66,20 @@ class Slave:
         engine = self.engine
         for publication in engine.publications.values():
             for link in publication.links:
-                rows.append([link.connection_id, link.callerid, "o", "TCPROS", publication.topic, True, _peer(link)])
+                rows.append(
+                    [link.connection_id, link.callerid, "o", "TCPROS", publication.topic, True, _peer(link)]
+                )
             for sender in publication.senders:
                 rows.append(
-                    [sender.connection_id, sender.callerid, "o", "UDPROS", publication.topic, True, str(sender.address)]
+                    [
+                        sender.connection_id,
+                        sender.callerid,
+                        "o",
+                        "UDPROS",
+                        publication.topic,
+                        True,
+                        str(sender.address),
+                    ]
                 )
         for topic, entries in engine.subscriptions.items():
             for subscription in entries:
@@ -120,7 +129,7 @@ class Slave:
             return [ERROR, "expected a topic and a list of URIs", 0]
         uris = [uri for uri in publishers if isinstance(uri, str)]
         for subscription in list(self.engine.subscriptions.get(topic, [])):
-            subscription.update(uris, self._now)
+            subscription.update(uris, self.now)
         return [SUCCESS, "noted", 0]
 
     def request_topic(self, caller: str, topic: str, protocols: "list[object]") -> "list[object]":

@@ -60,7 +60,9 @@ class UdpReceiver:
     """Our subscription's datagrams from one publisher. Blocks may come in any order within a message; a message of
     which a block is missing when the next begins is dropped: `udp-incomplete`."""
 
-    def __init__(self, engine: "Engine", subscription: "Subscription", uri: str, connection_id: int, host: str) -> None:
+    def __init__(
+        self, engine: "Engine", subscription: "Subscription", uri: str, connection_id: int, host: str
+    ) -> None:
         self.engine = engine
         self.subscription = subscription
         self.uri = uri
@@ -86,7 +88,9 @@ class UdpReceiver:
         return ["UDPROS", header, engine.host, udp.port, DATAGRAM]  # type: ignore[attr-defined]
 
     @staticmethod
-    def accepted(engine: "Engine", subscription: "Subscription", uri: str, answer: "list[object]") -> "UdpReceiver":
+    def accepted(
+        engine: "Engine", subscription: "Subscription", uri: str, answer: "list[object]"
+    ) -> "UdpReceiver":
         """From the publisher's answer to requestTopic. Raises ProtocolError."""
         if len(answer) != 6:
             raise ProtocolError("udp-answer", "expected 6 items, got %d" % len(answer))

@@ -1,0 +1,55 @@
+"""The loop inside an asyncio loop: asyncio watches our poller's descriptor and gives us a turn when it is ready."""
+
+from __future__ import annotations
+
+import asyncio
+import weakref
+from typing import TYPE_CHECKING
+
+from roslet.errors import Unsupported
+
+if TYPE_CHECKING:
+    from roslet.io.select import Reactor
+
+# Seconds to wait for another thread that has the loop at the moment.
+TURN = 0.1
+
+_attached: weakref.WeakKeyDictionary[asyncio.AbstractEventLoop, _Bridge] = weakref.WeakKeyDictionary()
+
+
+class _Bridge:
+    def __init__(self, reactor: Reactor, loop: asyncio.AbstractEventLoop) -> None:
+        self._reactor = reactor
+        self._loop = loop
+        self._handle: asyncio.TimerHandle | None = None
+        loop.add_reader(reactor.fileno(), self._turn)
+        self._turn()
+
+    def _turn(self) -> None:
+        reactor = self._reactor
+        if reactor.in_loop:
+            return
+        try:
+            turned: list[bool] = []
+            reactor.call_soon(lambda: turned.append(True), user=True)
+            reactor.run_until(lambda: turned, TURN)
+        except Exception as error:
+            self._loop.call_exception_handler({"message": "a roslet callback raised", "exception": error})
+        when = reactor.user_deadline()
+        if self._handle is not None:
+            self._handle.cancel()
+            self._handle = None
+        if when is not None:
+            self._handle = self._loop.call_later(max(0.0, when - reactor.now()), self._turn)
+
+
+def attach(reactor: Reactor, loop: asyncio.AbstractEventLoop) -> None:
+    """Serve callbacks from `loop` as long as it runs. Raises Unsupported where the system's poller has no descriptor."""
+    if loop in # Seconds to wait for another thread that has the loop at the moment.
+TURN = 0.1
+
+_attached:
+        return
+    if reactor.fileno() < 0:
+        raise Unsupported("asyncio needs epoll, which this system does not have; use spin() in a thread")
+    _attached[loop] = _Bridge(reactor, loop)

@@ -1,0 +1,361 @@
+"""A machine on a TCP socket. Nothing here knows ROS: it moves bytes between a socket and a `Machine`'s face."""
+
+from __future__ import annotations
+
+import errno
+import socket
+import threading
+from typing import TYPE_CHECKING, Any
+
+from roslet.errors import ProtocolError
+from roslet.io.select import GONE, READ, WRITE, Timer, tune
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from roslet.io.select import Reactor
+
+# Bytes taken from a control connection in one go.
+ROOM = 64 << 10
+_BUSY = (errno.EAGAIN, errno.EWOULDBLOCK, errno.EINTR)
+
+
+class Stream:
+    """One connection. `after(stream)` runs after each input, with the loop's lock held, so that its owner can act.
+
+    The machine's face: `receive_data(data, now)` or `writable()` and `received(count, now)`; `data_to_send()`;
+    `closing` or `wants_close`; `deadline()`, `handle_deadline(now)`; `connected(now)`; `lost(reason, now)` or
+    `connection_lost`, if any; `user` where there is one.
+    """
+
+    def __init__(
+        self,
+        reactor: Reactor,
+        machine: Any,
+        sock: socket.socket,
+        after: Callable[[Stream], None],
+        connecting: bool,
+    ) -> None:
+        self.reactor = reactor
+        self.machine = machine
+        self.sock = sock
+        self.after = after
+        self.connecting = connecting
+        self.closed = False
+        self.user = False
+        self.description = ""
+        self._rest = b""
+        self._timer: Timer | None = None
+        self._fd = sock.fileno()
+        self._events = WRITE if connecting else READ
+        machine.channel = self
+        self._into = hasattr(machine, "writable")
+        if not self._into:
+            self._room = bytearray(ROOM)
+        reactor.register(self._fd, self._ready, self._events)
+        if not connecting:
+            self._describe()
+            self.arm()
+
+    @property
+    def closing(self) -> bool:
+        """Whether the machine wants the connection to end."""
+        machine = self.machine
+        return bool(machine.wants_close if hasattr(machine, "wants_close") else machine.closing)
+
+    def _describe(self) -> None:
+        try:
+            ours, theirs = self.sock.getsockname(), self.sock.getpeername()
+            self.description = f"TCPROS connection on port {ours[1]} to [{theirs[0]}:{theirs[1]}]"
+        except OSError:
+            self.description = "a connection that has ended"
+
+    # -- input
+
+    def _ready(self, events: int) -> None:
+        if self.closed:
+            return
+        if self.connecting:
+            self._finish_connect()
+            return
+        if events & WRITE:
+            self.flush()
+        if events & (READ | GONE) and not self.closed:
+            self._read()
+
+    def _finish_connect(self) -> None:
+        code = self.sock.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
+        if code:
+            self.lose(f"cannot connect: {errno.errorcode.get(code, code)}")
+            return
+        self.connecting = False
+        self._describe()
+        self._want(READ)
+        self.machine.connected(self.reactor.now())
+        self.flush()
+        self.after(self)
+        self.arm()
+
+    def _read(self) -> None:
+        machine = self.machine
+        try:
+            if self._into:
+                count = self.sock.recv_into(machine.writable())
+            else:
+                count = self.sock.recv_into(self._room)
+        except OSError as error:
+            if error.errno not in _BUSY:
+                self.lose(error.strerror or str(error))
+            return
+        if not count:
+            self.lose("closed by the peer")
+            return
+        now = self.reactor.now()
+        if self._into:
+            machine.received(count, now)
+        else:
+            machine.receive_data(memoryview(self._room)[:count], now)
+        self.after(self)
+        if not self.closed:
+            self.flush()
+            self.arm()
+            if self._into and self.machine.user and not self.user and not self.closed:
+                self._become_user(self.machine.take_rest())
+
+    def adopt(self, machine: Any, rest: bytes) -> None:
+        """`machine` takes the connection over from the present one, which had `rest` left of the input."""
+        machine.channel = self
+        machine.take_over(self.machine.data_to_send(), rest)
+        self.machine = machine
+
+    def _become_user(self, rest: bytes) -> None:
+        """From now on what arrives runs user code: read only while somebody spins, and without the lock."""
+        self.user = True
+        self.reactor.unregister(self._fd)
+
+        def begin() -> None:
+            if not self.closed:
+                if rest:
+                    self._take(rest)
+                if not self.closed:
+                    self.reactor.register(self._fd, self._ready_user, self._events, user=True)
+
+        if rest:
+            self.reactor.call_soon(begin, user=True)
+        else:
+            begin()
+
+    def _take(self, rest: bytes) -> None:
+        try:
+            self.machine.frames.feed(rest)
+        except ProtocolError as error:
+            self.machine.fault(error, self.reactor.now())
+        self._after_user()
+
+    def _after_user(self) -> None:
+        machine = self.machine
+        if machine.closing or machine.replies:
+            with self.reactor.lock:
+                self.flush()
+                self.after(self)
+
+    def _ready_user(self, events: int) -> None:
+        if self.closed:
+            return
+        if events & WRITE:
+            with self.reactor.lock:
+                self.flush()
+        machine = self.machine
+        try:
+            count = self.sock.recv_into(machine.writable())
+        except OSError as error:
+            if error.errno not in _BUSY:
+                with self.reactor.lock:
+                    self.lose(error.strerror or str(error))
+            return
+        if not count:
+            with self.reactor.lock:
+                self.lose("closed by the peer")
+            return
+        try:
+            machine.frames.received(count)
+        except ProtocolError as error:
+            machine.fault(error, self.reactor.now())
+        if machine.closing or machine.replies:
+            self._after_user()
+
+    # -- output
+
+    def flush(self) -> None:
+        """Send what the machine has; close when it wants to and everything is out."""
+        if self.closed or self.connecting:
+            if self.closing and not self.closed:
+                self.lose("given up")
+            return
+        data = self.machine.data_to_send()
+        if data:
+            self._rest = self._rest + data if self._rest else data
+        if self._rest:
+            sent = self.try_send(self._rest)
+            if self.closed:
+                return
+            self._rest = self._rest[sent:]
+        queue = getattr(self.machine, "queue", None)
+        if queue is None:
+            waiting = bool(self._rest)
+            self._want(READ | WRITE if waiting else READ)
+        else:
+            # Publishing threads fill the queue and ask for WRITE under the same lock, so none of their wishes is lost.
+            with self.machine.publication.lock:
+                if not self._rest:
+                    self._flush_queue(queue)
+                waiting = bool(self._rest) or bool(len(queue))
+                self._want(READ | WRITE if waiting else READ)
+        if not waiting and self.closing:
+            self.lose(getattr(self.machine, "reason", "") or "closed")
+
+    def _flush_queue(self, queue: Any) -> None:
+        while len(queue):
+            buffers = queue.peek()
+            sent = self.try_send(buffers[0]) if len(buffers) == 1 else self.try_send_many(buffers)
+            queue.sent(sent)
+            if self.closed or sent < sum(map(len, buffers)):
+                return
+
+    def try_send(self, data: Any) -> int:
+        """How many bytes the socket took; 0 where it is full or has failed (then `closed` turns true in this turn)."""
+        try:
+            return self.sock.send(data)
+        except OSError as error:
+            return self._send_failed(error)
+
+    def try_send_many(self, buffers: Any) -> int:
+        try:
+            return self.sock.sendmsg(buffers)
+        except OSError as error:
+            return self._send_failed(error)
+
+    def _send_failed(self, error: OSError) -> int:
+        if error.errno not in _BUSY:
+            # Any thread may be here: the loop takes the connection down.
+            self.reactor.call_soon(lambda: self.lose(error.strerror or str(error)))
+        return 0
+
+    def want_write(self) -> None:
+        """Flush when the socket has room."""
+        self._want(READ | WRITE)
+
+    def _want(self, events: int) -> None:
+        if events != self._events and not self.closed:
+            self._events = events
+            self.reactor.modify(self._fd, events)
+
+    # -- time and the end
+
+    def arm(self) -> None:
+        """One timer for the machine's deadline."""
+        when = self.machine.deadline() if not self.closed else None
+        timer = self._timer
+        if timer is not None:
+            if when is not None and timer.function is not None and timer.when <= when:
+                return  # it fires early, finds nothing due and is armed again
+            timer.cancel()
+            self._timer = None
+        if when is not None:
+            self._timer = self.reactor.call_at(when, self._due)
+
+    def _due(self) -> None:
+        self._timer = None
+        if not self.closed:
+            self.machine.handle_deadline(self.reactor.now())
+            self.after(self)
+            if not self.closed:
+                self.flush()
+                self.arm()
+
+    def lose(self, reason: str) -> None:
+        """Close the socket and tell the machine."""
+        if self.closed:
+            return
+        self.close()
+        lose_machine(self.machine, reason, self.reactor.now())
+        self.after(self)
+
+    def close(self) -> None:
+        """Close the socket without a word to the machine."""
+        if self.closed:
+            return
+        self.closed = True
+        if self._timer is not None:
+            self._timer.cancel()
+        self.reactor.unregister(self._fd)
+        self.sock.close()
+
+
+def lose_machine(machine: Any, reason: str, now: float) -> None:
+    """Tell a machine that its connection is gone, or was never made."""
+    lost = getattr(machine, "lost", None) or getattr(machine, "connection_lost", None)
+    if lost is not None:
+        lost(reason, now)
+
+
+def connect(
+    reactor: Reactor,
+    machine: Any,
+    address: tuple[str, int],
+    after: Callable[[Stream], None],
+    failed: Callable[[str], None],
+) -> None:
+    """Connect `machine` to `address` without blocking; `failed(reason)` where no socket could even be made.
+
+    A host that is no address is looked up in a thread of its own: a name server may take seconds.
+    """
+    host, port = address
+    try:
+        socket.inet_aton(host)
+    except OSError:
+        if host != "localhost":
+            _lookup(reactor, machine, address, after, failed)
+            return
+        host = "127.0.0.1"
+    _open(reactor, machine, (host, port), after, failed)
+
+
+def _open(
+    reactor: Reactor,
+    machine: Any,
+    address: tuple[str, int],
+    after: Callable[[Stream], None],
+    failed: Callable[[str], None],
+) -> None:
+    try:
+        sock = socket.socket()
+    except OSError as error:
+        failed(error.strerror or str(error))
+        return
+    tune(sock)
+    code = sock.connect_ex(address)
+    if code not in (0, errno.EINPROGRESS):
+        sock.close()
+        failed(f"cannot connect: {errno.errorcode.get(code, code)}")
+        return
+    Stream(reactor, machine, sock, after, connecting=True)
+
+
+def _lookup(
+    reactor: Reactor,
+    machine: Any,
+    address: tuple[str, int],
+    after: Callable[[Stream], None],
+    failed: Callable[[str], None],
+) -> None:
+    def run() -> None:
+        try:
+            found = socket.getaddrinfo(address[0], address[1], socket.AF_INET, socket.SOCK_STREAM)[0][4]
+        except OSError as error:
+            reason = f"cannot find host {address[0]}: {error.strerror or error}"
+            reactor.call_soon(lambda: failed(reason))
+            return
+        reactor.call_soon(lambda: _open(reactor, machine, (str(found[0]), address[1]), after, failed))
+
+    threading.Thread(target=run, name="roslet-lookup", daemon=True).start()

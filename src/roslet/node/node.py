@@ -1,0 +1,607 @@
+"""The node."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import sys
+import threading
+import time
+import weakref
+from typing import TYPE_CHECKING, Any
+
+from roslet.engine.ros1.engine import Engine
+from roslet.errors import (
+    CallTimeout,
+    Fault,
+    InvalidName,
+    NodeClosed,
+    ParameterNotSet,
+    RosletError,
+    Unsupported,
+)
+from roslet.io.ros1 import Ros1Shell, own_host
+from roslet.io.select import Reactor, reactor
+from roslet.names import Arguments, check_base_name, join, parse_host_port, resolve
+from roslet.node.clock import Clock, Rate, Timer
+from roslet.node.future import Future
+from roslet.node.log import Log
+from roslet.node.qos import QoS
+from roslet.node.services import Client, Service
+from roslet.node.topics import Publisher, Subscription
+from roslet.node.values import parse_value
+from roslet.wire.tcpros import MAX_FRAME
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from roslet.engine.ros1 import graph
+    from roslet.wire.time import Time
+
+# Seconds that making a publisher, subscription or service waits for the master; after that it goes on in the background.
+REGISTER_TIMEOUT = 2.0
+# Seconds for one question to the master or to another node.
+CALL_TIMEOUT = 10.0
+# Seconds that closing a node gives the master to hear of it.
+CLOSE_TIMEOUT = 0.5
+DEFAULT_MASTER = "http://localhost:11311"
+_MISSING: Any = object()
+
+_open_nodes: weakref.WeakSet[Node] = weakref.WeakSet()
+
+
+class Node:
+    """A node on a ROS network.
+
+    name       a base name; `__name:=x` among the arguments overrides it
+    network    "ros1://host:port", "ros1://" for $ROS_MASTER_URI. Without one: "ros2://", which is not there yet
+    namespace  what relative names are in; $ROS_NAMESPACE where empty
+    arguments  as in sys.argv[1:]: remappings `a:=b`, private parameters `_p:=v`, `__name __ns __master __ip __hostname`
+    anonymous  append something to the name that no other node has
+
+    Callbacks run inside `spin()` and its like, in that thread; `start()` makes a thread that spins. What a callback
+    raises comes out of spin. Close the node, or use it as a context manager; at exit what is open is closed.
+
+    Raises InvalidName, Unsupported, OSError where no port can be had.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        network: str | None = None,
+        namespace: str = "",
+        arguments: Sequence[str] = (),
+        anonymous: bool = False,
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
+        env = os.environ if environment is None else environment
+        self.arguments = given = Arguments(list(arguments))
+        name = given.specials.get("name", name)
+        if anonymous and "name" not in given.specials:
+            name = f"{name}_{os.getpid()}_{time.time_ns() // 1_000_000}"
+        check_base_name(name)
+        namespace = given.specials.get("ns") or namespace or env.get("ROS_NAMESPACE", "")
+        self.name = join("/", join(namespace.lstrip("/"), name)) if namespace.strip("/") else "/" + name
+        self.namespace = self.name[: self.name.rfind("/")] or "/"
+        self.network, master_uri = _network(network, given.specials.get("master"), env)
+        self._remappings = given.resolved(self.name)
+        host = given.specials.get("hostname") or given.specials.get("ip")
+        host = host or own_host(dict(env), parse_host_port(master_uri)[0])
+        self.reactor: Reactor = reactor()
+        self.clock = Clock(self.reactor)
+        self.log = Log(self)
+        self.is_shutdown = False
+        self._on_shutdown: list[Callable[[], object]] = []
+        self._parameter_callbacks: dict[str, list[Callable[[Any], object]]] = {}
+        self._publishers: dict[str, Publisher] = {}
+        self._subscriptions: list[Subscription] = []
+        self._spinner: threading.Thread | None = None
+        self._closing = threading.Lock()
+        self._engine = Engine(self.name, master_uri, host, os.getpid())
+        self._engine.on_note = self._note
+        self._engine.on_parameter = self._parameter_changed
+        self._engine.on_shutdown = self._shut_down
+        with self.reactor.lock:
+            self._shell = Ros1Shell(
+                self._engine, self.reactor, "127.0.0.1" if host in ("127.0.0.1", "localhost") else ""
+            )
+        _open_nodes.add(self)
+        self._begin()
+
+    def _begin(self) -> None:
+        """Log to /rosout, follow /clock where it is asked for, set the private parameters of the arguments."""
+        self.log._publisher = Publisher(self, "/rosout", _message_class("rosgraph_msgs/Log"), QoS(depth=100))
+        with self.reactor.lock:
+            self._engine.watch_parameter("/use_sim_time", self._sim_time_known, self.reactor.now())
+            self._update()
+        for key, value in self.arguments.parameters.items():
+            self.set_parameter("~" + key, parse_value(value))
+
+    # -- topics
+
+    def publisher(self, topic: str, type: Any, *, qos: QoS | int | None = None) -> Publisher:  # noqa: A002
+        """A publisher of `topic`. `type` is a name such as "std_msgs/String" or a message class.
+
+        A node publishes a topic once: a second call with the same type gives the same publisher.
+        Raises InvalidName, UnknownType, NodeClosed, RosletError where the topic has another type here.
+        """
+        self._check_open()
+        full = self.resolve(topic)
+        message_type = _message_class(type)
+        known = self._publishers.get(full)
+        if known is not None:
+            if known.type is not message_type:
+                raise RosletError(f"{self.name} publishes {full} already, as {known.type._type}")
+            return known
+        publisher = Publisher(self, full, message_type, _qos(qos))
+        self._publishers[full] = publisher
+        for subscription in self._subscriptions:
+            self._pair(publisher, subscription)
+        self._settle()
+        return publisher
+
+    def subscribe(
+        self,
+        topic: str,
+        type: Any = "*",  # noqa: A002
+        callback: Callable[[Any], object] | None = None,
+        *,
+        qos: QoS | int | None = None,
+        max_message: int = MAX_FRAME,
+    ) -> Subscription:
+        """A subscription of `topic`. `type` as for `publisher`, or "*": any type, delivered as RawMessage.
+
+        `max_message` bounds one message's bytes; a publisher that sends a longer one is disconnected, and the log says so.
+        """
+        self._check_open()
+        full = self.resolve(topic)
+        message_type = None if type in (None, "*") else _message_class(type)
+        subscription = Subscription(self, full, message_type, callback, _qos(qos), max_message)
+        self._subscriptions.append(subscription)
+        own = self._publishers.get(full)
+        if own is not None:
+            self._pair(own, subscription)
+        self._settle()
+        return subscription
+
+    def _pair(self, publisher: Publisher, subscription: Subscription) -> None:
+        if publisher.topic == subscription.topic and subscription._publisher is None:
+            if subscription.type is publisher.type:
+                subscription._publisher = publisher
+                publisher._attach(subscription)
+            else:
+                self.log.error(f"{publisher.topic}: published and subscribed here with different types")
+
+    # -- services
+
+    def service(self, name: str, type: Any, handler: Callable[[Any], Any]) -> Service:  # noqa: A002
+        """Offer the service `name`; see `Service` for the handler."""
+        self._check_open()
+        service = Service(self, self.resolve(name), _service_class(type), handler)
+        self._settle()
+        return service
+
+    def client(self, name: str, type: Any, *, persistent: bool = False) -> Client:  # noqa: A002
+        """A client of the service `name`, which need not be there yet."""
+        self._check_open()
+        return Client(self, self.resolve(name), _service_class(type), persistent)
+
+    # -- time
+
+    def now(self) -> Time:
+        """The time: simulated where `/use_sim_time` is true."""
+        return self.clock.now()
+
+    def timer(self, period: float, callback: Callable[[], object], *, once: bool = False) -> Timer:
+        """Call `callback()` every `period` seconds inside spin."""
+        self._check_open()
+        return Timer(self.clock, period, callback, once)
+
+    def rate(self, hz: float) -> Rate:
+        return Rate(self.clock, self.sleep, hz)
+
+    def sleep(self, seconds: float) -> None:
+        """Serve callbacks for `seconds` of the node's time; returns early when the node shuts down."""
+        if not self.clock.simulated:
+            self.reactor.run_until(lambda: self.is_shutdown, seconds)
+            return
+        begin = self.clock.seconds()
+        end = begin + seconds
+        self.reactor.run_until(lambda: self.is_shutdown or not begin <= self.clock.seconds() < end)
+
+    # -- parameters
+
+    def get_parameter(self, name: str, default: Any = _MISSING) -> Any:
+        """A parameter, or a dict of all below a namespace. Raises ParameterNotSet where there is none and no default."""
+        try:
+            return self.call_master("getParam", self.resolve(name))
+        except Fault:
+            if default is _MISSING:
+                raise ParameterNotSet(f"parameter {self.resolve(name)} is not set") from None
+            return default
+
+    def set_parameter(self, name: str, value: Any) -> None:
+        """Set a parameter to bool, int, float, str, bytes, list or dict."""
+        self.call_master("setParam", self.resolve(name), value)
+
+    def delete_parameter(self, name: str) -> None:
+        """Raises ParameterNotSet."""
+        try:
+            self.call_master("deleteParam", self.resolve(name))
+        except Fault as error:
+            raise ParameterNotSet(error.message) from None
+
+    def has_parameter(self, name: str) -> bool:
+        return bool(self.call_master("hasParam", self.resolve(name)))
+
+    def search_parameter(self, name: str) -> str | None:
+        """The full name of the nearest parameter `name`, from this node's namespace upwards."""
+        try:
+            return str(self.call_master("searchParam", name))
+        except Fault:
+            return None
+
+    def parameter_names(self) -> list[str]:
+        return [str(name) for name in self.call_master("getParamNames")]
+
+    def on_parameter(self, name: str, callback: Callable[[Any], object]) -> Any:
+        """Call `callback(value)` inside spin whenever the parameter changes; returns its present value, {} where unset."""
+        full = self.resolve(name)
+        self._parameter_callbacks.setdefault(full, []).append(callback)
+        future: Future[Any] = Future(self.reactor, f"parameter {full}")
+        with self.reactor.lock:
+            self._engine.watch_parameter(full, _into(future), self.reactor.now())
+            self._update()
+        return future.result(CALL_TIMEOUT)
+
+    def _parameter_changed(self, key: str, value: object) -> None:
+        if key == "/use_sim_time":
+            self._sim_time_known(value, None, 0.0)
+        for name, callbacks in self._parameter_callbacks.items():
+            if key == name or key.startswith(name.rstrip("/") + "/"):
+                for callback in callbacks:
+                    self.reactor.call_soon(lambda f=callback: f(value), user=True)  # type: ignore[misc]
+
+    def _sim_time_known(self, value: object, error: Exception | None, now: float) -> None:
+        if error is not None or value is not True or self.clock.simulated:
+            return
+        self.clock.simulated = True
+        clock_type = _message_class("rosgraph_msgs/Clock")
+
+        def sink(view: memoryview, start: int, end: int, link: object) -> None:
+            try:
+                message: Any = clock_type.deserialize_from(view, start, end)
+            except RosletError:
+                self._count("clock: malformed-message")
+                return
+            self.clock.advance(message.clock.secs, message.clock.nsecs)
+
+        entry = self._engine.subscribe(
+            "/clock",
+            clock_type._type,
+            clock_type._md5sum,
+            clock_type._full_text,
+            sink,
+            self.reactor.now(),
+            background=True,
+        )
+        entry.on_link = None
+        self.reactor.call_soon(self._update)
+
+    # -- the graph
+
+    def resolve(self, name: str) -> str:
+        """The full name that `name` has here, remappings applied. Raises InvalidName."""
+        return resolve(name, self.name, self._remappings)
+
+    def call_master(self, method: str, *arguments: Any, timeout: float = CALL_TIMEOUT) -> Any:
+        """Call the master's API; the node's name is put first. Returns the value; raises Fault, Unreachable, CallTimeout."""
+        return self.call_master_async(method, *arguments).result(timeout)
+
+    def call_master_async(self, method: str, *arguments: Any) -> Future[Any]:
+        self._check_open()
+        future: Future[Any] = Future(self.reactor, f"{method} of the master at {self._engine.master_uri}")
+        with self.reactor.lock:
+            self._engine.call_master(method, [self.name, *arguments], _into(future), self.reactor.now())
+            self._update()
+        return future
+
+    def call_node(self, uri: str, method: str, *arguments: Any, timeout: float = CALL_TIMEOUT) -> Any:
+        """Call the slave API of the node at `uri`; this node's name is put first."""
+        future: Future[Any] = Future(self.reactor, f"{method} of {uri}")
+        with self.reactor.lock:
+            self._engine.call_slave(uri, method, [self.name, *arguments], _into(future), self.reactor.now())
+            self._update()
+        return future.result(timeout)
+
+    @property
+    def uri(self) -> str:
+        """Where this node's slave API is."""
+        return self._engine.uri
+
+    @property
+    def master_uri(self) -> str:
+        return self._engine.master_uri
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """What was dropped or refused, by its named reason."""
+        return dict(self._engine.counters)
+
+    def system_state(self) -> tuple[dict[str, list[str]], dict[str, list[str]], dict[str, list[str]]]:
+        """Three dicts: topic -> publishers, topic -> subscribers, service -> providers."""
+        state = self.call_master("getSystemState")
+        publishers, subscribers, services = (
+            {str(n): [str(x) for x in who] for n, who in part} for part in state
+        )
+        return publishers, subscribers, services
+
+    def topics(self) -> dict[str, str]:
+        """Every topic the master knows, with its type."""
+        return {str(topic): str(kind) for topic, kind in self.call_master("getTopicTypes")}
+
+    def nodes(self) -> list[str]:
+        """Every node that has something registered, sorted."""
+        return sorted({name for part in self.system_state() for names in part.values() for name in names})
+
+    def services(self) -> list[str]:
+        return sorted(self.system_state()[2])
+
+    def topic_type(self, topic: str) -> str | None:
+        return self.topics().get(self.resolve(topic))
+
+    def lookup_node(self, name: str) -> str | None:
+        """The URI of a node's slave API; None where the master does not know it."""
+        try:
+            return str(self.call_master("lookupNode", self.resolve(name)))
+        except Fault:
+            return None
+
+    def lookup_service(self, name: str) -> str | None:
+        """The rosrpc:// URI of a service; None where there is none."""
+        try:
+            return str(self.call_master("lookupService", self.resolve(name)))
+        except Fault:
+            return None
+
+    # -- running
+
+    def spin(self, timeout: float | None = None) -> None:
+        """Serve callbacks until the node shuts down, or for `timeout` seconds."""
+        self.reactor.run_until(lambda: self.is_shutdown, timeout)
+
+    def spin_once(self, timeout: float = 0.0) -> None:
+        """Serve what is ready; wait at most `timeout` seconds for something."""
+        turned: list[bool] = []
+        if timeout <= 0:
+            self.reactor.call_soon(lambda: turned.append(True), user=True)
+            self.reactor.run_until(lambda: turned, 1.0)
+        else:
+            self.reactor.run_turns(1, timeout)
+
+    def spin_until(self, predicate: Callable[[], object], timeout: float | None = None) -> bool:
+        """Serve callbacks until `predicate()` is true; false after `timeout` seconds or when the node shuts down."""
+        self.reactor.run_until(lambda: predicate() or self.is_shutdown, timeout)
+        return bool(predicate())
+
+    def start(self) -> None:
+        """Spin in a thread of its own from now on; callbacks run there. A callback that raises is logged."""
+        if self._spinner is None:
+            self._spinner = threading.Thread(target=self._spin_on, name=f"roslet {self.name}", daemon=True)
+            self._spinner.start()
+
+    def _spin_on(self) -> None:
+        while not self.is_shutdown:
+            try:
+                self.spin()
+            except Exception as error:
+                self.log.error(f"a callback raised {type(error).__name__}: {error}")
+                sys.excepthook(type(error), error, error.__traceback__)
+
+    def on_shutdown(self, function: Callable[[], object]) -> None:
+        """Call `function()` when the node closes, whoever asks for it."""
+        self._on_shutdown.append(function)
+
+    def _shut_down(self, reason: str) -> None:
+        """Somebody asks this node to end: the master where a node of the same name has come, or `rosnode kill`."""
+        self.log.warning(f"shutting down: {reason}")
+        threading.Thread(target=self.close, name="roslet-close").start()
+
+    def close(self) -> None:
+        """Unregister everything and close every connection. Closing twice is allowed."""
+        with self._closing:
+            if self.is_shutdown:
+                return
+            for function in self._on_shutdown:
+                try:
+                    function()
+                except Exception as error:
+                    self.log.error(f"an on_shutdown function raised {type(error).__name__}: {error}")
+            self.log._publisher = None
+            self.is_shutdown = True
+        _open_nodes.discard(self)
+        self._say_goodbye()
+        self._shell.close()
+        self.reactor.wake()
+
+    def _say_goodbye(self) -> None:
+        engine = self._engine
+        left = []
+        with self.reactor.lock:
+            calls = [] if engine.registrations.master_lost else engine.closing_calls()
+            engine.registrations.entries.clear()
+            for method, arguments in calls:
+                future: Future[Any] = Future(self.reactor, method)
+                engine.call_master(method, arguments, _into(future), self.reactor.now())
+                left.append(future)
+            self._update()
+        self.reactor.run_until(lambda: all(future.done() for future in left), CLOSE_TIMEOUT, user=False)
+
+    def __enter__(self) -> Node:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"Node({self.name!r}, network={self.network!r})"
+
+    # -- what publishers and their like use
+
+    def _check_open(self) -> None:
+        if self.is_shutdown:
+            raise NodeClosed(f"{self.name} is closed")
+
+    def _settle(self) -> None:
+        """Wait a moment for the master, so that what was just made is known when the call returns."""
+        registrations = self._engine.registrations
+        self.reactor.run_until(
+            lambda: registrations.settled or registrations.master_lost, REGISTER_TIMEOUT, user=False
+        )
+
+    def _update(self) -> None:
+        self._shell.update()
+
+    def _count(self, reason: str) -> None:
+        self._engine.count(reason)
+
+    def _note(self, text: str) -> None:
+        self.reactor.call_soon(lambda: self.log.warning(text))
+
+    def _published_topics(self) -> list[str]:
+        return list(self._engine.publications)
+
+    def _send_datagram(self, datagram: bytes, address: tuple[str, int]) -> bool:
+        return self._shell._datagrams.send(datagram, address)
+
+    def _advertise(self, publisher: Publisher) -> graph.Publication:
+        kind, qos = publisher.type, publisher.qos
+        with self.reactor.lock:
+            entry = self._engine.advertise(
+                publisher.topic,
+                kind._type,
+                kind._md5sum,
+                kind._full_text,
+                qos.durability == "transient_local",
+                0 if qos.history == "keep_all" else qos.depth,
+                self.reactor.now(),
+            )
+            self._update()
+        return entry
+
+    def _unadvertise(self, publisher: Publisher, entry: graph.Publication) -> None:
+        self._publishers.pop(publisher.topic, None)
+        with self.reactor.lock:
+            for subscription in publisher._local:
+                subscription._publisher = None
+            if not self.is_shutdown:
+                self._engine.unadvertise(entry, self.reactor.now())
+                self._update()
+
+    def _subscribe(self, subscription: Subscription, sink: Any, max_frame: int) -> graph.Subscription:
+        kind = subscription.type
+        with self.reactor.lock:
+            entry = self._engine.subscribe(
+                subscription.topic,
+                "*" if kind is None else kind._type,
+                "*" if kind is None else kind._md5sum,
+                "" if kind is None else kind._full_text,
+                sink,
+                self.reactor.now(),
+                max_frame,
+                "udp" if subscription.qos.reliability == "best_effort" else "tcp",
+                copies=kind is not None and kind._views,
+            )
+            entry.on_link = subscription._link_changed
+            self._update()
+        return entry
+
+    def _unsubscribe(self, subscription: Subscription, entry: graph.Subscription) -> None:
+        if subscription in self._subscriptions:
+            self._subscriptions.remove(subscription)
+        if subscription._publisher is not None:
+            subscription._publisher._detach(subscription)
+        with self.reactor.lock:
+            if not self.is_shutdown:
+                self._engine.unsubscribe(entry, self.reactor.now())
+                self._update()
+
+    def _offer(self, service: Service, serve: Any) -> graph.ServiceOffer:
+        kind = service.type
+        with self.reactor.lock:
+            entry = self._engine.offer_service(
+                service.name,
+                kind._type,
+                kind._md5sum,
+                (kind.Request._type, kind.Response._type),
+                serve,
+                self.reactor.now(),
+            )
+            self._update()
+        return entry
+
+    def _withdraw(self, entry: graph.ServiceOffer) -> None:
+        with self.reactor.lock:
+            if not self.is_shutdown:
+                self._engine.withdraw_service(entry, self.reactor.now())
+                self._update()
+
+
+def _into(future: Future[Any]) -> Callable[[object, Exception | None, float], None]:
+    def done(value: object, error: Exception | None, now: float) -> None:
+        if error is None:
+            future.set_result(value)
+        else:
+            future.set_exception(error)
+
+    return done
+
+
+def _network(network: str | None, master: str | None, env: Mapping[str, str]) -> tuple[str, str]:
+    """The network's URL in full, and the master's URI."""
+    if network is None or network.startswith("ros2:"):
+        raise Unsupported('the ROS 2 network is not there yet; use network="ros1://host:port" or "ros1://"')
+    scheme, found, rest = network.partition("://")
+    if scheme != "ros1" or not found:
+        raise InvalidName(f"{network!r} is no network; write ros1://host:port")
+    if not rest:
+        uri = master or env.get("ROS_MASTER_URI") or DEFAULT_MASTER
+        host, port = parse_host_port(uri)
+    else:
+        host, port = parse_host_port(network if ":" in rest else network.rstrip("/") + ":11311")
+    return f"ros1://{host}:{port}", f"http://{host}:{port}"
+
+
+def _qos(qos: QoS | int | None) -> QoS:
+    return qos if isinstance(qos, QoS) else QoS() if qos is None else QoS(depth=qos)
+
+
+def _message_class(kind: Any) -> Any:
+    """The ROS 1 class of a message type given by name or class."""
+    if isinstance(kind, str):
+        from roslet.gen.runtime import message_class
+
+        return message_class("ros1", kind)
+    if not hasattr(kind, "_md5sum"):
+        raise Unsupported(f"{kind!r} is no ROS 1 message class; this node is on a ROS 1 network")
+    return kind
+
+
+def _service_class(kind: Any) -> Any:
+    if isinstance(kind, str):
+        from roslet.gen.runtime import service_class
+
+        return service_class("ros1", kind)
+    if not hasattr(kind, "_md5sum") or not hasattr(kind, "Request"):
+        raise Unsupported(f"{kind!r} is no ROS 1 service class; this node is on a ROS 1 network")
+    return kind
+
+
+@atexit.register
+def _close_all() -> None:
+    for node in list(_open_nodes):
+        node.close()
+
+
+__all__ = ["CallTimeout", "Node"]

@@ -1,0 +1,507 @@
+"""Publishers and subscriptions of the ROS 1 network."""
+
+from __future__ import annotations
+
+import select
+import socket
+import threading
+from collections import deque
+from struct import pack_into
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+from roslet.engine.ros1.links import PublisherLink
+from roslet.engine.ros1.udp import UdpSender
+from roslet.errors import MalformedMessage, NodeClosed, ProtocolError
+from roslet.wire.message import BufferTooSmall
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator, Callable
+
+    from roslet.engine.ros1.graph import Publication
+    from roslet.engine.ros1.graph import Subscription as Entry
+    from roslet.node.node import Node
+    from roslet.node.qos import QoS
+    from roslet.wire.message import Message
+
+# The first size of a publisher's buffer; it grows to what its messages need.
+FIRST_BUFFER = 1024
+# With `keep_all`, how long publishing waits for one subscriber that takes nothing. Seconds.
+MAX_BLOCKING = 10.0
+# sendmsg takes at most this many buffers (IOV_MAX).
+MAX_GATHER = 1024
+
+
+class RawMessage:
+    """A message that was not deserialised, as a subscription of type "*" gets it.
+
+    `data` are its bytes, `type`, `md5sum` and `definition` what the publisher said of it.
+    """
+
+    __slots__ = ("data", "definition", "md5sum", "type")
+
+    def __init__(self, data: bytes, type: str, md5sum: str, definition: str) -> None:  # noqa: A002 - the field's name
+        self.data = data
+        self.type = type
+        self.md5sum = md5sum
+        self.definition = definition
+
+    def __repr__(self) -> str:
+        return f"RawMessage({self.type}, {len(self.data)} bytes)"
+
+
+class Publisher:
+    """Publishes one topic. Made by `Node.publisher`. Any thread may publish.
+
+    statistics: messages, dropped (for slow subscribers, oldest first).
+    """
+
+    def __init__(self, node: Node, topic: str, message_type: type[Message], qos: QoS) -> None:
+        self.node = node
+        self.topic = topic
+        self.type = message_type
+        self.qos = qos
+        self.messages = 0
+        self._lock = threading.Lock()
+        self._buffer = bytearray(FIRST_BUFFER)
+        self._view = memoryview(self._buffer)
+        self._has_header = bool(getattr(message_type, "_has_header", False))
+        self._latched: bytes | None = None
+        self._latch = qos.durability == "transient_local"
+        self._wait = qos.history == "keep_all"
+        self._local: tuple[Subscription, ...] = ()
+        self._latched_local: Message | None = None
+        self._on_connect: list[Callable[[str], None]] = []
+        self._on_disconnect: list[Callable[[str], None]] = []
+        self._entry: Publication | None = node._advertise(self)
+        self._entry.lock = self._lock
+        self._entry.on_link = self._link_changed
+
+    @property
+    def subscriber_count(self) -> int:
+        entry = self._entry
+        return 0 if entry is None else len(entry.links) + len(entry.senders) + len(self._local)
+
+    @property
+    def statistics(self) -> dict[str, int]:
+        entry = self._entry
+        dropped = 0 if entry is None else entry.dropped + sum(link.queue.dropped for link in entry.links)
+        return {"messages": self.messages, "dropped": dropped, "subscribers": self.subscriber_count}
+
+    def publish(self, message: Any = None, /, **fields: Any) -> None:
+        """Send a message: a message of this type, or its fields as keywords.
+
+        Raises InvalidMessage with the value path where a value does not fit its field, TypeError for a message of
+        another type, NodeClosed. With history "keep_all" it waits while a subscriber takes nothing, at most
+        MAX_BLOCKING seconds, then drops for that one.
+        """
+        entry = self._entry
+        if entry is None:
+            raise NodeClosed(f"the publisher of {self.topic} is closed")
+        if message is None:
+            message = self.type(**fields)
+        elif message.__class__ is not self.type:
+            message = self.convert(message)
+        with self._lock:
+            self.messages = serial = self.messages + 1
+            if self._has_header:
+                message.header.seq = serial
+            links = entry.links
+            parts: list[Any] | None = None if self._latch or entry.senders else []
+            try:
+                end = message.serialize_into(self._buffer, 4, parts)
+            except BufferTooSmall:
+                self._grow(4 + message.serialized_size())
+                if parts:
+                    parts = []
+                end = message.serialize_into(self._buffer, 4, parts)
+            if parts:
+                self._send_parts(links, parts, end)
+            else:
+                pack_into("<I", self._buffer, 0, end - 4)
+                frame = self._view[:end]
+                for link in links:
+                    # The usual case first: nothing waits, so try the socket at once.
+                    if link.queue.bytes == 0:
+                        try:
+                            sent = link.channel.sock.send(frame)  # type: ignore[attr-defined]
+                        except OSError as error:
+                            sent = link.channel._send_failed(error)  # type: ignore[attr-defined]
+                        if sent == end:
+                            link.messages += 1
+                            link.bytes += end - 4
+                            continue
+                        self._later(link, frame, sent)
+                    else:
+                        self._queue(link, bytes(frame))
+                if self._latch:
+                    self._latched = bytes(frame)
+                for sender in entry.senders:
+                    self._send_datagrams(sender, frame)
+        if self._local or self._latch:
+            self._deliver_locally(message)
+
+    def convert(self, message: Any) -> Message:
+        """A message of this type from a dict, or from an equal message class. Raises TypeError."""
+        if isinstance(message, dict):
+            return self.type(**message)
+        if isinstance(message, self.type):
+            return message
+        if getattr(message, "_md5sum", None) == getattr(self.type, "_md5sum", "") and hasattr(
+            message, "serialize"
+        ):
+            converted: Message = self.type.deserialize(message.serialize())
+            return converted
+        raise TypeError(f"{self.topic} carries {self.type._type}, not {type(message).__name__}")
+
+    def _grow(self, size: int) -> None:
+        self._view.release()
+        self._buffer = bytearray(max(size, 2 * len(self._buffer)))
+        self._view = memoryview(self._buffer)
+
+    def _send_parts(self, links: tuple[PublisherLink, ...], parts: list[Any], end: int) -> None:
+        """Send the scratch buffer with large arrays between, without copying those."""
+        buffers: list[Any] = []
+        at = 0
+        total = end
+        for position, data in parts:
+            if position > at:
+                buffers.append(self._view[at:position])
+            buffers.append(data)
+            total += len(data) if type(data) is bytes else memoryview(data).nbytes
+            at = position
+        if end > at:
+            buffers.append(self._view[at:end])
+        pack_into("<I", self._buffer, 0, total - 4)
+        frame: bytes | None = None
+        for link in links:
+            if link.queue.bytes == 0 and len(buffers) <= MAX_GATHER:
+                sent = link.channel.try_send_many(buffers)  # type: ignore[attr-defined]
+                if sent == total:
+                    link.messages += 1
+                    link.bytes += total - 4
+                    continue
+                if self._wait:
+                    self._send_rest(link, buffers, sent, total)
+                    continue
+                frame = frame or b"".join(buffers)
+                self._later(link, memoryview(frame), sent)
+            else:
+                frame = frame or b"".join(buffers)
+                self._queue(link, frame)
+
+    def _later(self, link: PublisherLink, frame: memoryview, sent: int) -> None:
+        """The socket took `sent` bytes of the frame: keep, or wait for, the rest."""
+        if self._wait:
+            self._send_rest(link, [frame], sent, len(frame))
+            return
+        if sent:
+            link.queue.push_rest(bytes(frame[sent:]))
+        else:
+            link.queue.push(bytes(frame))
+        link.messages += 1
+        link.bytes += len(frame) - 4
+        link.channel.want_write()  # type: ignore[union-attr,attr-defined]
+
+    def _queue(self, link: PublisherLink, frame: bytes) -> None:
+        if self._wait and link.queue.bytes:
+            self._drain(link)
+        link.queue.push(frame)
+        link.messages += 1
+        link.bytes += len(frame) - 4
+        link.channel.want_write()  # type: ignore[union-attr,attr-defined]
+
+    def _send_rest(self, link: PublisherLink, buffers: list[Any], sent: int, total: int) -> None:
+        """Block until the frame is out ("keep_all"), then go on."""
+        channel: Any = link.channel
+        views = [memoryview(buffer).cast("B") for buffer in buffers]
+        end = monotonic() + MAX_BLOCKING
+        done = sent
+        while True:
+            while views and sent >= len(views[0]):
+                sent -= len(views[0])
+                del views[0]
+            if not views:
+                link.messages += 1
+                link.bytes += total - 4
+                return
+            if channel.closed or not wait_writable(channel.sock, end - monotonic()):
+                break
+            views[0] = views[0][sent:]
+            sent = channel.try_send_many(views[:MAX_GATHER])
+            done += sent
+        if done:
+            # A frame that has begun must end, or the stream is lost: its rest goes out when there is room.
+            link.queue.push_rest(b"".join([views[0][sent:], *views[1:]]))
+            channel.want_write()
+        else:
+            link.queue.dropped += 1
+        self.node._count("publisher: blocked-too-long")
+
+    def _drain(self, link: PublisherLink) -> None:
+        channel: Any = link.channel
+        end = monotonic() + MAX_BLOCKING
+        queue = link.queue
+        while queue.bytes and not channel.closed and wait_writable(channel.sock, end - monotonic()):
+            queue.sent(channel.try_send_many(queue.peek()))
+
+    def _send_datagrams(self, sender: UdpSender, frame: memoryview) -> None:
+        try:
+            datagrams = sender.datagrams(frame)
+        except ProtocolError as error:
+            self.node._count("publisher: " + error.reason)
+            return
+        for datagram in datagrams:
+            if not self.node._send_datagram(datagram, sender.address):
+                self.node._count("publisher: udp-not-sent")
+
+    def _link_changed(self, link: Any, opened: bool) -> None:
+        if opened and self._latched is not None:
+            with self._lock:
+                if isinstance(link, PublisherLink):
+                    link.queue.push(self._latched)
+                    link.channel.want_write()  # type: ignore[union-attr,attr-defined]
+                else:
+                    self._send_datagrams(link, memoryview(self._latched))
+        for function in self._on_connect if opened else self._on_disconnect:
+            self.node.reactor.call_soon(lambda f=function, who=link.callerid: f(who), user=True)  # type: ignore[misc]
+
+    def on_connect(self, function: Callable[[str], None]) -> None:
+        """Call `function(name of the subscriber)` inside spin when a subscriber connects."""
+        self._on_connect.append(function)
+
+    def on_disconnect(self, function: Callable[[str], None]) -> None:
+        """Call `function(name of the subscriber)` inside spin when a subscriber goes."""
+        self._on_disconnect.append(function)
+
+    # -- within this node, nothing is serialised for its own subscriptions
+
+    def _deliver_locally(self, message: Message) -> None:
+        for subscription in self._local:
+            subscription._receive_local(message.copy())
+        if self._latch:
+            self._latched_local = message.copy()
+
+    def _attach(self, subscription: Subscription) -> None:
+        self._local = (*self._local, subscription)
+        if self._latched_local is not None:
+            subscription._receive_local(self._latched_local.copy())
+
+    def _detach(self, subscription: Subscription) -> None:
+        self._local = tuple(other for other in self._local if other is not subscription)
+
+    def wait_for_subscribers(self, count: int = 1, timeout: float | None = None) -> bool:
+        """Serve until at least `count` subscribers are connected; false after `timeout` seconds."""
+        return self.node.reactor.run_until(lambda: self.subscriber_count >= count, timeout, user=False)
+
+    def close(self) -> None:
+        """Unregister and disconnect every subscriber. Closing twice is allowed."""
+        entry, self._entry = self._entry, None
+        if entry is not None:
+            self.node._unadvertise(self, entry)
+
+    def __enter__(self) -> Publisher:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()
+
+
+def wait_writable(sock: socket.socket, timeout: float) -> bool:
+    """Whether the socket took room within `timeout` seconds; false also when it was closed."""
+    if timeout <= 0 or sock.fileno() < 0:
+        return False
+    poller = select.poll()
+    poller.register(sock, select.POLLOUT)
+    return bool(poller.poll(timeout * 1000))
+
+
+class Subscription:
+    """Receives one topic. Made by `Node.subscribe`.
+
+    With a callback each message goes to it inside spin, in the thread that spins. Without one, messages are kept, at
+    most `qos.depth` (the oldest is dropped and counted), for `take()` and `async for`.
+
+    statistics: messages, dropped, malformed, publishers.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        topic: str,
+        message_type: type[Message] | None,
+        callback: Callable[[Any], object] | None,
+        qos: QoS,
+        max_frame: int,
+    ) -> None:
+        self.node = node
+        self.topic = topic
+        self.type = message_type
+        self.qos = qos
+        self.messages = 0
+        self.malformed = 0
+        self.dropped = 0
+        self._callback = callback
+        self._queue: deque[Any] = deque()
+        self._waiters: list[Callable[[], None]] = []
+        self._local_waiting = 0
+        self._with_link = False
+        self._publisher: Publisher | None = None
+        self._on_connect: list[Callable[[str], None]] = []
+        self._on_disconnect: list[Callable[[str], None]] = []
+        self._entry: Entry | None = node._subscribe(self, self._make_sink(), max_frame)
+
+    def _make_sink(self) -> Callable[[memoryview, int, int, Any], None]:
+        decode = self.type.deserialize_from if self.type is not None else None
+        report = self.node.reactor.report
+
+        def sink(view: memoryview, start: int, end: int, link: Any) -> None:
+            if decode is None:
+                message: Any = self._raw(view, start, end, link)
+            else:
+                try:
+                    message = decode(view, start, end)
+                except MalformedMessage as error:
+                    self._reject(error, link)
+                    return
+            self.messages += 1
+            callback = self._callback
+            if callback is None:
+                self._keep(message)
+                return
+            try:
+                if self._with_link:
+                    callback(message, link)  # type: ignore[call-arg]
+                else:
+                    callback(message)
+            except Exception as error:
+                report(error)
+
+        return sink
+
+    def _raw(self, view: memoryview, start: int, end: int, link: Any) -> RawMessage:
+        header = getattr(link, "peer_header", {})
+        return RawMessage(
+            bytes(view[start:end]),
+            header.get("type", "*"),
+            header.get("md5sum", "*"),
+            header.get("message_definition", ""),
+        )
+
+    def _reject(self, error: MalformedMessage, link: Any) -> None:
+        self.malformed += 1
+        self.node._count("subscriber: malformed-message")
+        if self.malformed == 1:
+            self.node.log.error(
+                f"{self.topic}: a message from {getattr(link, 'uri', 'a publisher')} is malformed: {error}"
+            )
+
+    def _receive_local(self, message: Message) -> None:
+        if self._local_waiting >= self.qos.depth and self.qos.history == "keep_last":
+            self.dropped += 1
+            return
+        self._local_waiting += 1
+
+        def deliver() -> None:
+            self._local_waiting -= 1
+            if self._entry is None:
+                return
+            self.messages += 1
+            if self._callback is None:
+                self._keep(message)
+            elif self._with_link:
+                self._callback(message, None)  # type: ignore[call-arg]
+            else:
+                self._callback(message)
+
+        self.node.reactor.call_soon(deliver, user=True)
+
+    def _keep(self, message: Any) -> None:
+        if self.qos.history == "keep_last" and len(self._queue) >= self.qos.depth:
+            self._queue.popleft()
+            self.dropped += 1
+        self._queue.append(message)
+        waiters, self._waiters = self._waiters, []
+        for wake in waiters:
+            wake()
+
+    def _link_changed(self, link: Any, opened: bool) -> None:
+        who = getattr(link, "peer_header", {}).get("callerid", getattr(link, "uri", ""))
+        for function in self._on_connect if opened else self._on_disconnect:
+            self.node.reactor.call_soon(lambda f=function: f(who), user=True)  # type: ignore[misc]
+
+    def on_connect(self, function: Callable[[str], None]) -> None:
+        """Call `function(name of the publisher)` inside spin when a publisher is connected."""
+        self._on_connect.append(function)
+
+    def on_disconnect(self, function: Callable[[str], None]) -> None:
+        """Call `function(name of the publisher)` inside spin when a publisher goes."""
+        self._on_disconnect.append(function)
+
+    @property
+    def publisher_count(self) -> int:
+        entry = self._entry
+        if entry is None:
+            return 0
+        return sum(1 for link in entry.links.values() if link.state == 2) + (
+            1 if self._publisher is not None else 0
+        )
+
+    @property
+    def statistics(self) -> dict[str, int]:
+        return {
+            "messages": self.messages,
+            "dropped": self.dropped,
+            "malformed": self.malformed,
+            "publishers": self.publisher_count,
+        }
+
+    def wait_for_publishers(self, count: int = 1, timeout: float | None = None) -> bool:
+        """Serve until at least `count` publishers are connected; false after `timeout` seconds."""
+        return self.node.reactor.run_until(lambda: self.publisher_count >= count, timeout, user=False)
+
+    def take(self, timeout: float | None = None) -> Any:
+        """The oldest message kept; spins for at most `timeout` seconds until there is one (None: for ever). None where
+        there was none in time, or the node was closed. Raises TypeError on a subscription with a callback."""
+        if self._callback is not None:
+            raise TypeError(f"the subscription of {self.topic} has a callback; it keeps no messages to take")
+        if not self._queue:
+            self.node.reactor.run_until(lambda: self._queue or self._entry is None, timeout)
+        return self._queue.popleft() if self._queue else None
+
+    def __aiter__(self) -> AsyncIterator[Any]:
+        return self._iterate()
+
+    async def _iterate(self) -> AsyncIterator[Any]:
+        import asyncio
+
+        from roslet.io.asyncio import attach
+
+        loop = asyncio.get_running_loop()
+        attach(self.node.reactor, loop)
+        while self._entry is not None:
+            while self._queue:
+                yield self._queue.popleft()
+            waiter: asyncio.Future[None] = loop.create_future()
+
+            def wake(waiter: asyncio.Future[None] = waiter) -> None:
+                loop.call_soon_threadsafe(lambda: waiter.done() or waiter.set_result(None))
+
+            self._waiters.append(wake)
+            if not self._queue and self._entry is not None:
+                await waiter
+
+    def close(self) -> None:
+        """Unsubscribe. Closing twice is allowed."""
+        entry, self._entry = self._entry, None
+        if entry is not None:
+            self.node._unsubscribe(self, entry)
+            waiters, self._waiters = self._waiters, []
+            for wake in waiters:
+                wake()
+
+    def __enter__(self) -> Subscription:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()
