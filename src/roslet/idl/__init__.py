@@ -1,8 +1,9 @@
-"""What a message is: .msg, .srv and .action files of both dialects as immutable records, by name, with their hashes.
+"""What a message is: .msg, .srv and .action files of both dialects as immutable records, by name, with their
+hashes.
 
-The lowest room: imports nothing but `errors` and `record`. `parse` reads a text, `Registry` finds definitions (what the
-user loaded, the environment's, the bundled standard packages), `md5sum full_text type_hash type_description` say what
-peers compare.
+The lowest room: imports nothing but `errors` and `record`. `parse` reads a text, `Registry` finds definitions
+(what the user loaded, the environment's, the bundled standard packages), `md5sum full_text type_hash
+type_description` say what peers compare.
 """
 
 from roslet.idl.md5 import full_text, md5sum

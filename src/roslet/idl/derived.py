@@ -1,4 +1,5 @@
-"""The interfaces that services and actions imply: ROS 1's seven action messages, ROS 2's events and action services."""
+"""The interfaces that services and actions imply: ROS 1's seven action messages, ROS 2's events and action
+services."""
 
 from __future__ import annotations
 
@@ -70,12 +71,13 @@ def ros2_action(
 def ros1_action(
     name: TypeName, goal: Message, result: Message, feedback: Message, text: str, file: str
 ) -> Action:
-    """The action with the seven messages that actionlib speaks; the derived ones' text is ours, as no file holds it."""
+    """The action with the seven messages that actionlib speaks; the derived ones' text is ours, as no file
+    holds it."""
     package = name.package
     dialect: Dialect = "ros1"
 
     def message(suffix: str, *lines: tuple[str, str, FieldType]) -> Message:
-        body = "".join(["%s %s\n" % (spelled, field_name) for spelled, field_name, _ in lines])
+        body = "".join([f"{spelled} {field_name}\n" for spelled, field_name, _ in lines])
         fields = _fields(*[(field_name, type_) for _, field_name, type_ in lines])
         return Message(TypeName(package, "msg", name.name + suffix), dialect, fields, (), body, file)
 

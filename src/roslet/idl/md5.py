@@ -1,5 +1,5 @@
-"""ROS 1: the MD5 sum of a definition and its full text (http://wiki.ros.org/ROS/Technical%20Overview, "Message
-serialization and msg MD5 sums"; the full text is the `message_definition` of a TCPROS header)."""
+"""ROS 1: the MD5 sum of a definition and its full text (http://wiki.ros.org/ROS/Technical%20Overview,
+"Message serialization and msg MD5 sums"; the full text is the `message_definition` of a TCPROS header)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ def md5sum(registry: Registry, name: TypeName | str) -> str:
     _refuse_ros2(registry)
     interface = registry.interface(name)
     sums: dict[TypeName, str] = {}
-    # Dependencies come before what is made of them when the list is walked from its end, but for diamonds; hence twice.
+    # Dependencies come before what is made of them when the list is walked from its end, but for diamonds;
+    # hence twice.
     for message in _inner_first(registry, interface):
         sums[message.name] = _digest(_md5_text(message, sums))
     if isinstance(interface, Message):
@@ -32,9 +33,11 @@ def md5sum(registry: Registry, name: TypeName | str) -> str:
 
 
 def full_text(registry: Registry, name: TypeName | str) -> str:
-    """The ROS 1 definition with those of all nested types after it, as the `message_definition` of a header carries it.
+    """The ROS 1 definition with those of all nested types after it, as the `message_definition` of a header
+    carries it.
 
-    For a service that is the text of the file; ask for `pkg/NameRequest` to get a part's. Raises as `md5sum` does.
+    For a service that is the text of the file; ask for `pkg/NameRequest` to get a part's. Raises as `md5sum`
+    does.
     """
     _refuse_ros2(registry)
     interface = registry.interface(name)
@@ -42,7 +45,7 @@ def full_text(registry: Registry, name: TypeName | str) -> str:
         raise Unsupported("an action of ROS 1 has no full text: its messages have")
     pieces = [interface.text]
     for message in registry.dependencies(interface.name):
-        pieces.append("%sMSG: %s\n%s" % (_RULE, message.name.text("ros1"), message.text))
+        pieces.append("{}MSG: {}\n{}".format(_RULE, message.name.text("ros1"), message.text))
     return "\n".join(pieces)
 
 
@@ -73,12 +76,10 @@ def _inner_first(registry: Registry, interface: Message | Service | Action) -> l
 
 def _md5_text(message: Message, sums: dict[TypeName, str]) -> str:
     """Constants in order, then fields; a nested type is its own sum and loses its brackets."""
-    lines = [
-        "%s %s=%s" % (constant.type.spelled, constant.name, constant.text) for constant in message.constants
-    ]
+    lines = [f"{constant.type.spelled} {constant.name}={constant.text}" for constant in message.constants]
     for field in message.fields:
         nested = field.type.message
-        lines.append("%s %s" % (field.type if nested is None else sums[nested], field.name))
+        lines.append(f"{field.type if nested is None else sums[nested]} {field.name}")
     return "\n".join(lines).strip()
 
 

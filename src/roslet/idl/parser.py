@@ -1,8 +1,10 @@
-"""Text of .msg, .srv and .action files to records. No I/O; every error is a DefinitionError with line and column.
+"""Text of .msg, .srv and .action files to records. No I/O; every error is a DefinitionError with line and
+column.
 
-ROS 1: http://wiki.ros.org/msg, /srv and actionlib's .action; a line is `type name` or `type NAME=value`.
-ROS 2: the interface definition of its documentation; a line is `type name [default]` or `type NAME=value`, types may be
-bounded. In both, `#` begins a comment, except in a ROS 1 string constant, whose value is the whole rest of the line.
+ROS 1: http://wiki.ros.org/msg, /srv and actionlib's .action; a line is `type name` or `type NAME=value`. ROS
+2: the interface definition of its documentation; a line is `type name [default]` or `type NAME=value`, types
+may be bounded. In both, `#` begins a comment, except in a ROS 1 string constant, whose value is the whole
+rest of the line.
 """
 
 from __future__ import annotations
@@ -35,12 +37,12 @@ _UNSUPPORTED_ROS2 = {"time": "builtin_interfaces/Time", "duration": "builtin_int
 def parse(text: str, name: TypeName, dialect: Dialect, file: str = "") -> Interface:
     """The interface that `text` defines; `name.kind` says whether as a .msg, .srv or .action.
 
-    Nested types are named, not looked up. Raises DefinitionError, and nothing else, for any wrong text; `file` is only
-    shown there. Time is linear in the length of the text.
+    Nested types are named, not looked up. Raises DefinitionError, and nothing else, for any wrong text;
+    `file` is only shown there. Time is linear in the length of the text.
     """
     problem = package_problem(name.package, dialect) or interface_problem(name.name, dialect)
     if problem:
-        raise DefinitionError("%s: %s" % (name, problem), file)
+        raise DefinitionError(f"{name}: {problem}", file)
     reader = _Reader(name, dialect, file)
     if name.kind == "msg":
         return reader.message(name, text, 1)
@@ -84,7 +86,8 @@ class _Reader:
     def service(self, text: str) -> Service:
         parts = self.parts(text)
         if self.dialect == "ros1":
-            # genmsg takes every line after the first separator for the response and a missing one for an empty response.
+            # genmsg takes every line after the first separator for the response and a missing one for an
+            # empty response.
             request = self.message(self.part_name("Request"), *parts[0])
             rest = [self.message(self.part_name("Response"), *part) for part in parts[1:]]
             response = self.join(self.part_name("Response"), rest)
@@ -135,9 +138,7 @@ class _Reader:
         entries: list[Field | Constant] = [*fields, *constants]
         for entry in sorted(entries, key=lambda entry: entry.line):
             if entry.name in taken:
-                self.fail(
-                    "%s is defined twice, first in line %d" % (entry.name, taken[entry.name]), 1, entry.line
-                )
+                self.fail(f"{entry.name} is defined twice, first in line {taken[entry.name]}", 1, entry.line)
             taken[entry.name] = entry.line
 
     # One message's lines
@@ -173,7 +174,7 @@ class _Reader:
                 fields.append(entry)
             if entry_name in taken:
                 first = taken[entry_name]
-                self.fail("%s is defined twice, first in line %d" % (entry_name, first), rest_at + 1)
+                self.fail(f"{entry_name} is defined twice, first in line {first}", rest_at + 1)
             taken[entry_name] = self.line
         return Message(name, self.dialect, tuple(fields), tuple(constants), text, self.file)
 
@@ -182,24 +183,24 @@ class _Reader:
             if self.name.kind == "msg":
                 self.fail("lines --- belong to .srv and .action files", at + 1)
             self.fail("the separator is a line that holds --- and begins with it", at + 1)
-        self.fail("expected a name after the type %s" % word, at + len(word) + 1)
+        self.fail(f"expected a name after the type {word}", at + len(word) + 1)
 
     def field(self, spelled: str, type_at: int, name: str, name_at: int, after: str, after_at: int) -> Field:
         type_ = self.type(spelled, type_at)
         problem = field_problem(name, self.dialect) if name else "the name is missing"
         if problem:
-            self.fail("%s is no field name: %s" % (name or after, problem), name_at + 1)
+            self.fail(f"{name or after} is no field name: {problem}", name_at + 1)
         if not after:
             return Field(name, type_, None, self.line)
         if self.dialect == "ros1":
             self.fail(
-                "expected the end of the line after %s: ROS 1 fields have no default values" % name,
+                f"expected the end of the line after {name}: ROS 1 fields have no default values",
                 after_at + 1,
             )
         try:
             return Field(name, type_, default_value(type_, after), self.line)
         except ValueError as error:
-            self.fail("default of %s: %s" % (name, error), after_at + 1)
+            self.fail(f"default of {name}: {error}", after_at + 1)
 
     def constant(
         self, spelled: str, type_at: int, name: str, name_at: int, after: str, after_at: int
@@ -208,17 +209,17 @@ class _Reader:
         if type_ is None or spelled in _UNSUPPORTED_ROS2:
             self.type(spelled, type_at)  # a spelling mistake is the better error
             self.fail(
-                "constants have a primitive type without bounds or brackets, not %s" % spelled, type_at + 1
+                f"constants have a primitive type without bounds or brackets, not {spelled}", type_at + 1
             )
         problem = constant_problem(name, self.dialect) if name else "the name is missing"
         if problem:
-            self.fail("%s is no constant name: %s" % (name or after, problem), name_at + 1)
+            self.fail(f"{name or after} is no constant name: {problem}", name_at + 1)
         text = after[1:].strip()
         try:
             value: Value = scalar_value(self.dialect, type_, text)
         except ValueError as error:
             value_at = after_at + 1 + len(after[1:]) - len(after[1:].lstrip())
-            self.fail("constant %s: %s" % (name, error), value_at + 1)
+            self.fail(f"constant {name}: {error}", value_at + 1)
         return Constant(name, type_, value, text, self.line)
 
     # Types
@@ -233,13 +234,13 @@ class _Reader:
             base = spelled[:bracket]
             array = self.array(spelled[bracket + 1 : -1], at + bracket + 1)
         elif "[" in spelled or "]" in spelled:
-            self.fail("%s: brackets do not match" % spelled, at + 1 + max(spelled.find("["), 0))
+            self.fail(f"{spelled}: brackets do not match", at + 1 + max(spelled.find("["), 0))
         simple = self.primitives.get(base)
         if simple is not None:
             return FieldType(simple.primitive, None, base, None, array)
         if "[" in base or "]" in base:
             self.fail(
-                "%s: arrays have one dimension" % spelled, at + base.find("[" if "[" in base else "]") + 1
+                f"{spelled}: arrays have one dimension", at + base.find("[" if "[" in base else "]") + 1
             )
         less = base.find("<")
         if less >= 0:
@@ -259,28 +260,28 @@ class _Reader:
 
     def size(self, digits: str, at: int, minimum: int) -> int:
         if not digits.isdecimal() or not digits.isascii():
-            self.fail("expected a size in decimal digits, not %r" % digits[:40], at + 1)
+            self.fail(f"expected a size in decimal digits, not {digits[:40]!r}", at + 1)
         # The text of an array type enters the MD5 of ROS 1, where 03 and 3 would differ.
         if len(digits) > 1 and digits[0] == "0":
             self.fail("a size has no leading zeros", at + 1)
         if len(digits) > len(str(MAXIMUM_BOUND)) or not minimum <= int(digits) <= MAXIMUM_BOUND:
-            self.fail("a size is at least %d and at most %d" % (minimum, MAXIMUM_BOUND), at + 1)
+            self.fail(f"a size is at least {minimum} and at most {MAXIMUM_BOUND}", at + 1)
         return int(digits)
 
     def bounded_string(self, base: str, less: int, at: int, array: Array | None) -> FieldType:
         spelled = base[:less]
         if spelled not in ("string", "wstring"):
-            self.fail("only string and wstring have a bound, not %s" % (spelled or base), at + less + 1)
+            self.fail(f"only string and wstring have a bound, not {spelled or base}", at + less + 1)
         if self.dialect == "ros1":
             self.fail("ROS 1 has no bounded strings", at + less + 1)
         if base[less : less + 2] != "<=":
-            self.fail("a bound is written %s<=N" % spelled, at + less + 1)
+            self.fail(f"a bound is written {spelled}<=N", at + less + 1)
         return FieldType(spelled, None, spelled, self.size(base[less + 2 :], at + less + 2, 1), array)
 
     def nested(self, base: str, array: Array | None, at: int) -> TypeName:
         dialect = self.dialect
         if dialect == "ros2" and base in _UNSUPPORTED_ROS2:
-            self.fail("ROS 2 has no type %s: use %s" % (base, _UNSUPPORTED_ROS2[base]), at + 1)
+            self.fail(f"ROS 2 has no type {base}: use {_UNSUPPORTED_ROS2[base]}", at + 1)
         if dialect == "ros1" and base == "Header" and array is None:
             # Only the bare word: an array of them means the package's own type, as genmsg reads it.
             return TypeName("std_msgs", "msg", "Header")
@@ -288,13 +289,13 @@ class _Reader:
         if not slash:
             package, name = self.name.package, base
         elif "/" in name:
-            self.fail("%s is no type name: expected package/Name" % base, at + 1)
+            self.fail(f"{base} is no type name: expected package/Name", at + 1)
         problem = package_problem(package, dialect) if package else "the package is missing"
         if problem:
-            self.fail("%s is no type name: %s" % (base, problem), at + 1)
+            self.fail(f"{base} is no type name: {problem}", at + 1)
         problem = interface_problem(name, dialect) if name else "the name is missing"
         if problem:
-            self.fail("%s is no type: %s" % (base, problem), at + len(base) - len(name) + 1)
+            self.fail(f"{base} is no type: {problem}", at + len(base) - len(name) + 1)
         return TypeName(package, "msg", name)
 
 

@@ -1,7 +1,7 @@
 """What a definition is: immutable records, the same for both dialects. No I/O, no parsing.
 
-Written by hand on `roslet.record.Record` because `dataclasses` and `typing` would cost more to import than everything
-else this room does before the first message. Treat every record as immutable.
+Written by hand on `roslet.record.Record` because `dataclasses` and `typing` would cost more to import than
+everything else this room does before the first message. Treat every record as immutable.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ from roslet.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, Literal, TypeAlias, Union
+    from typing import Literal, TypeAlias, Union
 
     Dialect: TypeAlias = Literal["ros1", "ros2"]
     Kind: TypeAlias = Literal["msg", "srv", "action"]
-    Value: TypeAlias = Union[bool, int, float, str, tuple["Value", ...]]
+    Value: TypeAlias = bool | int | float | str | tuple["Value", ...]
 else:
     Dialect = Kind = str
     Value = object
@@ -87,10 +87,11 @@ class Array(Record):
 class FieldType(Record):
     """One field's type: a primitive or another message, and perhaps an array of it.
 
-    `primitive` is canonical: bool int8 uint8 int16 uint16 int32 uint32 int64 uint64 float32 float64 string wstring
-    time duration (the last two in ROS 1 only). `char` and `byte` become uint8/int8 as the dialect defines (ROS 1: char
-    is uint8, byte is int8; ROS 2: both are uint8) and stay visible in `spelled`, which is the base type exactly as the
-    definition wrote it (without array or bound). `message` is the full name of a nested type where `primitive` is None.
+    `primitive` is canonical: bool int8 uint8 int16 uint16 int32 uint32 int64 uint64 float32 float64 string
+    wstring time duration (the last two in ROS 1 only). `char` and `byte` become uint8/int8 as the dialect
+    defines (ROS 1: char is uint8, byte is int8; ROS 2: both are uint8) and stay visible in `spelled`, which
+    is the base type exactly as the definition wrote it (without array or bound). `message` is the full name
+    of a nested type where `primitive` is None.
     """
 
     __slots__ = ("array", "message", "primitive", "spelled", "string_bound")
@@ -114,19 +115,19 @@ class FieldType(Record):
         """As a definition spells it: `string<=5[<=3]`, `geometry_msgs/Pose[36]`."""
         text = self.spelled
         if self.string_bound is not None:
-            text = "%s<=%d" % (text, self.string_bound)
+            text = f"{text}<={self.string_bound}"
         if self.array is None:
             return text
         if self.array.size is None:
             return text + "[]"
-        return "%s[%s%d]" % (text, "<=" if self.array.kind == "bounded" else "", self.array.size)
+        return f"{text}[{'<=' if self.array.kind == 'bounded' else ''}{self.array.size}]"
 
 
 class Field(Record):
     """A field. `default` is None where the definition gives none; the defaults of an array are a tuple.
 
-    `line` counts from 1 in the file that holds the definition; 0 for a field that no file spells. It is no part of
-    what makes two fields equal.
+    `line` counts from 1 in the file that holds the definition; 0 for a field that no file spells. It is no
+    part of what makes two fields equal.
     """
 
     __slots__ = ("default", "line", "name", "type")
@@ -146,7 +147,8 @@ class Field(Record):
 
 
 class Constant(Record):
-    """A constant. `text` is the value's text as the dialect keeps it (ROS 1 hashes it); `line` as in `Field`."""
+    """A constant. `text` is the value's text as the dialect keeps it (ROS 1 hashes it); `line` as in
+    `Field`."""
 
     __slots__ = ("line", "name", "text", "type", "value")
     _fields = ("name", "type", "value", "text", "line")
@@ -204,8 +206,9 @@ class Message(_Interface):
 
 
 class Service(_Interface):
-    """A service. The parts are named `Name_Request`, `Name_Response` in ROS 2 and `NameRequest`, `NameResponse` in
-    ROS 1, of kind srv (of kind action for the services an action derives). `event` exists in ROS 2 only."""
+    """A service. The parts are named `Name_Request`, `Name_Response` in ROS 2 and `NameRequest`,
+    `NameResponse` in ROS 1, of kind srv (of kind action for the services an action derives). `event` exists
+    in ROS 2 only."""
 
     __slots__ = ("dialect", "event", "file", "name", "request", "response", "text")
     _fields = ("name", "dialect", "request", "response", "event", "text", "file")
@@ -230,8 +233,9 @@ class Service(_Interface):
 
 
 class Action(_Interface):
-    """An action. ROS 2 derives SendGoal and GetResult services and a FeedbackMessage; ROS 1 derives seven messages
-    (`NameAction`, `NameActionGoal`, ..., of kind msg). All that is derived stands in `services` and `messages`."""
+    """An action. ROS 2 derives SendGoal and GetResult services and a FeedbackMessage; ROS 1 derives seven
+    messages (`NameAction`, `NameActionGoal`, ..., of kind msg). All that is derived stands in `services` and
+    `messages`."""
 
     __slots__ = ("dialect", "feedback", "file", "goal", "messages", "name", "result", "services", "text")
     _fields = ("name", "dialect", "goal", "result", "feedback", "services", "messages", "text", "file")
@@ -260,6 +264,6 @@ class Action(_Interface):
 
 
 if TYPE_CHECKING:
-    Interface: TypeAlias = Union[Message, Service, Action]
+    Interface: TypeAlias = Message | Service | Action
 else:
     Interface = _Interface

@@ -35,11 +35,12 @@ class Registry:
     """The definitions of one dialect.
 
     They come from, in this order: what `load` was given (the latest first), `$AMENT_PREFIX_PATH` (ROS 2) or
-    `$ROS_PACKAGE_PATH` (ROS 1) of `environment`, and the bundled standard packages. `environment=None` leaves the
-    environment out. Nothing is read before it is asked for; what has been read stays.
+    `$ROS_PACKAGE_PATH` (ROS 1) of `environment`, and the bundled standard packages. `environment=None` leaves
+    the environment out. Nothing is read before it is asked for; what has been read stays.
 
-    Where a method takes a name, it is a TypeName or a text that `parse_type_name` accepts. Names of derived types are
-    names too: `pkg/srv/Name_Request`, `pkg/action/Name_SendGoal`, and in ROS 1 `pkg/NameRequest`, `pkg/NameActionGoal`.
+    Where a method takes a name, it is a TypeName or a text that `parse_type_name` accepts. Names of derived
+    types are names too: `pkg/srv/Name_Request`, `pkg/action/Name_SendGoal`, and in ROS 1 `pkg/NameRequest`,
+    `pkg/NameActionGoal`.
     """
 
     def __init__(self, dialect: Dialect, environment: Mapping[str, str] | None = os.environ) -> None:
@@ -54,8 +55,8 @@ class Registry:
     def load(self, path: str | os.PathLike[str]) -> list[TypeName]:
         """Put the definitions at `path` before all others and return their names, sorted.
 
-        `path` is a package, a workspace or its `src`, a directory of definition files, or one such file. Files are
-        parsed when they are asked for. Raises DefinitionError where there is no definition.
+        `path` is a package, a workspace or its `src`, a directory of definition files, or one such file.
+        Files are parsed when they are asked for. Raises DefinitionError where there is no definition.
         """
         source = load_source(os.fspath(path), self.dialect)
         self._loaded.insert(0, source)
@@ -71,21 +72,21 @@ class Registry:
         """
         found = self._checked_interface(self._type_name(name, "msg"))
         if not isinstance(found, Message):
-            raise UnknownType("%s is no message" % found.name.text(self.dialect), found.file)
+            raise UnknownType(f"{found.name.text(self.dialect)} is no message", found.file)
         return found
 
     def service(self, name: TypeName | str) -> Service:
         """The service, given or derived from an action. Raises as `message` does."""
         found = self._checked_interface(self._type_name(name, "srv"))
         if not isinstance(found, Service):
-            raise UnknownType("%s is no service" % found.name.text(self.dialect), found.file)
+            raise UnknownType(f"{found.name.text(self.dialect)} is no service", found.file)
         return found
 
     def action(self, name: TypeName | str) -> Action:
         """The action. Raises as `message` does."""
         found = self._checked_interface(self._type_name(name, "action"))
         if not isinstance(found, Action):
-            raise UnknownType("%s is no action" % found.name.text(self.dialect), found.file)
+            raise UnknownType(f"{found.name.text(self.dialect)} is no action", found.file)
         return found
 
     def interface(self, name: TypeName | str) -> Interface:
@@ -104,8 +105,9 @@ class Registry:
     def dependencies(self, name: TypeName | str) -> list[Message]:
         """The messages that the interface is made of, at any depth, each once, without itself.
 
-        The order is that of ROS 1's full text: the first field's type, what that is made of, the second field's, ...
-        A service has those of its request and then its response (not of its event); an action those of all its parts.
+        The order is that of ROS 1's full text: the first field's type, what that is made of, the second
+        field's, ... A service has those of its request and then its response (not of its event); an action
+        those of all its parts.
         """
         interface = self.interface(name)
         if isinstance(interface, Message):
@@ -125,7 +127,7 @@ class Registry:
                 if nested not in seen:
                     seen.add(nested)
                     message = self._records[nested]
-                    assert isinstance(message, Message)  # noqa: S101 - the check of `interface` has seen to it
+                    assert isinstance(message, Message)
                     found.append(message)
                     waiting += _nested_names(message)
         return found
@@ -181,7 +183,8 @@ class Registry:
         return None
 
     def _read(self, name: TypeName, path: str) -> Interface:
-        # Universal newlines, as genmsg reads; bytes that are no UTF-8 are kept, since a comment may hold anything.
+        # Universal newlines, as genmsg reads; bytes that are no UTF-8 are kept, since a comment may hold
+        # anything.
         with open(path, encoding="utf-8", errors="surrogateescape") as file:
             text = file.read()
         if text[:1] == "\ufeff":
@@ -213,7 +216,8 @@ class Registry:
         return found
 
     def _check(self, root: Message) -> None:
-        """See that every type inside `root` exists and none contains itself. Not recursive: nesting may be deep."""
+        """See that every type inside `root` exists and none contains itself. Not recursive: nesting may be
+        deep."""
         if root.name in self._checked:
             return
         path: list[tuple[Message, int]] = [(root, 0)]
@@ -239,16 +243,16 @@ class Registry:
             if found is None or found.name != nested:
                 self._fail_unknown(nested, message, field)
             if not isinstance(found, Message):
-                self._fail_at(UnknownType, "%s is no message" % nested.text(self.dialect), message, field)
+                self._fail_at(UnknownType, f"{nested.text(self.dialect)} is no message", message, field)
             path.append((found, 0))
             open_[found.name] = None
 
     def _fail_unknown(self, name: TypeName, message: Message | None, field: Field | None) -> NoReturn:
         variable = "$ROS_PACKAGE_PATH" if self.dialect == "ros1" else "$AMENT_PREFIX_PATH"
-        searched = "what was loaded, %s and the bundled packages" % variable
+        searched = f"what was loaded, {variable} and the bundled packages"
         if self._environment is None:
             searched = "what was loaded and the bundled packages"
-        text = "unknown type %s: not in %s" % (name.text(self.dialect), searched)
+        text = f"unknown type {name.text(self.dialect)}: not in {searched}"
         if message is None or field is None:
             raise UnknownType(text)
         self._fail_at(UnknownType, text, message, field)

@@ -33,7 +33,8 @@ _TYPE_IDS = {
 _BOUNDED_TYPE_IDS = {"string": 21, "wstring": 22}
 _ARRAY_OFFSETS = {"fixed": 48, "bounded": 96, "unbounded": 144}
 
-# IDL has no empty structure; this member stands in a message without fields, on the wire and in the description.
+# IDL has no empty structure; this member stands in a message without fields, on the wire and in the
+# description.
 _PLACEHOLDER = Field("structure_needs_at_least_one_member", FieldType("uint8", None, "uint8"))
 
 
@@ -51,8 +52,9 @@ def type_hash(registry: Registry, name: TypeName | str) -> str:
 def type_description(registry: Registry, name: TypeName | str, *, defaults: bool = False) -> dict[str, Any]:
     """The type description whose canonical JSON is hashed, its keys in canonical order.
 
-    With `defaults`, each field also has its `default_value` text, as type_description_interfaces/msg/TypeDescription
-    carries it; the hash leaves it out. Raises as `type_hash` does.
+    With `defaults`, each field also has its `default_value` text, as
+    type_description_interfaces/msg/TypeDescription carries it; the hash leaves it out. Raises as `type_hash`
+    does.
     """
     if registry.dialect != "ros2":
         raise Unsupported("type descriptions and hashes belong to ROS 2: ROS 1 types have an MD5 sum")
@@ -77,7 +79,8 @@ def type_description(registry: Registry, name: TypeName | str, *, defaults: bool
 
 
 def _members(interface: Interface) -> list[Field]:
-    """The fields that describe the interface; a service or action is described as if its parts were fields."""
+    """The fields that describe the interface; a service or action is described as if its parts were
+    fields."""
     if isinstance(interface, Message):
         return list(interface.fields) or [_PLACEHOLDER]
     if isinstance(interface, Service):
@@ -137,9 +140,9 @@ def _json(value: object) -> str:
     The texts here are legal names, so that nothing needs escaping, and the json module need not be imported.
     """
     if isinstance(value, dict):
-        return "{%s}" % ", ".join(['"%s": %s' % (key, _json(item)) for key, item in value.items()])
+        return "{{{}}}".format(", ".join([f'"{key}": {_json(item)}' for key, item in value.items()]))
     if isinstance(value, list):
-        return "[%s]" % ", ".join([_json(item) for item in value])
+        return "[{}]".format(", ".join([_json(item) for item in value]))
     if isinstance(value, str):
-        return '"%s"' % value
+        return f'"{value}"'
     return str(value)

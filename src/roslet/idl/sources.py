@@ -1,4 +1,5 @@
-"""Where definition files lie: share directories, crawled workspaces, what a user loads. Reads directories, parses nothing."""
+"""Where definition files lie: share directories, crawled workspaces, what a user loads. Reads directories,
+parses nothing."""
 
 from __future__ import annotations
 
@@ -10,13 +11,12 @@ from roslet.idl.spelling import KINDS, interface_problem, package_problem
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
     from typing import TypeAlias
 
     from roslet.idl.records import Dialect, Kind
 
-# A crawl for packages goes no deeper and reads no more directories than this, so that a mistaken path such as / ends
-# within a second. Real workspaces nest four or five deep and have hundreds.
+# A crawl for packages goes no deeper and reads no more directories than this, so that a mistaken path such as
+# / ends within a second. Real workspaces nest four or five deep and have hundreds.
 MAXIMUM_CRAWL_DEPTH = 12
 MAXIMUM_CRAWL_DIRECTORIES = 20_000
 
@@ -25,27 +25,28 @@ _IGNORE_MARKS = frozenset(("CATKIN_IGNORE", "COLCON_IGNORE", "AMENT_IGNORE"))
 
 
 class Share:
-    """A directory whose children are packages: `<root>/<package>/<kind>/<Name>.<kind>`. Nothing is read ahead."""
+    """A directory whose children are packages: `<root>/<package>/<kind>/<Name>.<kind>`. Nothing is read
+    ahead."""
 
     def __init__(self, root: str) -> None:
         self.root = root
 
     def find(self, package: str, kind: Kind, name: str) -> str | None:
         """The path of the file, or None."""
-        path = "%s/%s/%s/%s.%s" % (self.root, package, kind, name, kind)
+        path = f"{self.root}/{package}/{kind}/{name}.{kind}"
         return path if os.path.isfile(path) else None
 
     def packages(self) -> list[str]:
         """The packages that have a directory for definitions."""
         found = []
         for package in _names(self.root):
-            if any([os.path.isdir("%s/%s/%s" % (self.root, package, kind)) for kind in KINDS]):
+            if any(os.path.isdir(f"{self.root}/{package}/{kind}") for kind in KINDS):
                 found.append(package)
         return found
 
     def names(self, package: str, kind: Kind) -> list[str]:
         """The names that the package defines."""
-        return _definitions("%s/%s/%s" % (self.root, package, kind), kind)
+        return _definitions(f"{self.root}/{package}/{kind}", kind)
 
 
 class Packages:
@@ -59,7 +60,7 @@ class Packages:
         directories = self.directories.get(package)
         if directories is None:
             return None
-        path = "%s/%s.%s" % (directories[kind], name, kind)
+        path = f"{directories[kind]}/{name}.{kind}"
         return path if os.path.isfile(path) else None
 
     def packages(self) -> list[str]:
@@ -73,9 +74,11 @@ class Packages:
 
 
 class Workspace(Packages):
-    """A directory in $ROS_PACKAGE_PATH: its children first, and only when they lack a package a crawl for package.xml.
+    """A directory in $ROS_PACKAGE_PATH: its children first, and only when they lack a package a crawl for
+    package.xml.
 
-    A directory named `share` is an install space (REP 122), whose packages are its children: it is not crawled.
+    A directory named `share` is an install space (REP 122), whose packages are its children: it is not
+    crawled.
     """
 
     def __init__(self, root: str) -> None:
@@ -114,7 +117,7 @@ if TYPE_CHECKING:
 
 def bundled(dialect: Dialect) -> Share:
     """The definitions that come with roslet."""
-    return Share("%s/definitions/%s" % (os.path.dirname(os.path.abspath(__file__)), dialect))
+    return Share(f"{os.path.dirname(os.path.abspath(__file__))}/definitions/{dialect}")
 
 
 def environment_sources(dialect: Dialect, environment: Mapping[str, str]) -> list[Source]:
@@ -146,7 +149,7 @@ def load_source(path: str, dialect: Dialect) -> Packages:
     directories: dict[str, dict[Kind, str]] = {}
     if _is_package(path, names, True):
         directories[_package_name(path, names)] = _kind_directories(path)
-    elif any([_definitions(path, kind) for kind in KINDS]):
+    elif any(_definitions(path, kind) for kind in KINDS):
         package_directory = os.path.dirname(path) if os.path.basename(path) in KINDS else path
         package = _package_name(package_directory, _names(package_directory))
         # A plain directory holds all kinds side by side; msg/ of a package has its brothers.
@@ -157,13 +160,13 @@ def load_source(path: str, dialect: Dialect) -> Packages:
         directories, complete = crawl(path, True)
         if not complete:
             limit = MAXIMUM_CRAWL_DIRECTORIES
-            raise DefinitionError("more than %d directories to search: name a package" % limit, path)
+            raise DefinitionError(f"more than {limit} directories to search: name a package", path)
     if not directories:
         raise DefinitionError("no package and no .msg, .srv or .action file here", path)
     for package in directories:
         problem = package_problem(package, dialect)
         if problem:
-            raise DefinitionError("package %s: %s" % (package, problem), path)
+            raise DefinitionError(f"package {package}: {problem}", path)
     return Packages(directories)
 
 
@@ -175,8 +178,9 @@ def legal_names(source: Source, package: str, kind: Kind, dialect: Dialect) -> l
 def crawl(root: str, bare: bool = False) -> tuple[dict[str, dict[Kind, str]], bool]:
     """The packages under `root`, and whether the search stayed within its bounds.
 
-    The first package of a name wins, in breadth-first alphabetical order; a package's own subdirectories and those
-    marked to be ignored are not searched. `bare`: a directory with definitions but no package.xml counts too.
+    The first package of a name wins, in breadth-first alphabetical order; a package's own subdirectories and
+    those marked to be ignored are not searched. `bare`: a directory with definitions but no package.xml
+    counts too.
     """
     found: dict[str, dict[Kind, str]] = {}
     seen: set[tuple[int, int]] = set()
@@ -220,11 +224,9 @@ def _definitions(directory: str, kind: Kind) -> list[str]:
 
 
 def _is_package(directory: str, names: list[str], bare: bool) -> bool:
-    if any([manifest in names for manifest in _MANIFESTS]):
+    if any(manifest in names for manifest in _MANIFESTS):
         return True
-    return bare and any(
-        [kind in names and bool(_definitions(directory + "/" + kind, kind)) for kind in KINDS]
-    )
+    return bare and any(kind in names and bool(_definitions(directory + "/" + kind, kind)) for kind in KINDS)
 
 
 def _kind_directories(directory: str) -> dict[Kind, str]:

@@ -32,8 +32,8 @@ def _table(*more: tuple[str, str]) -> dict[str, FieldType]:
     return {spelled: FieldType(primitive, None, spelled) for spelled, primitive in _NUMBERS + more}
 
 
-# ROS 1: http://wiki.ros.org/msg, section "Field types"; ROS 2: the interface concept page of its documentation, where
-# `byte` is an octet.
+# ROS 1: http://wiki.ros.org/msg, section "Field types"; ROS 2: the interface concept page of its
+# documentation, where `byte` is an octet.
 PRIMITIVES: dict[str, dict[str, FieldType]] = {
     "ros1": _table(("byte", "int8"), ("time", "time"), ("duration", "duration")),
     "ros2": _table(("byte", "uint8"), ("wstring", "wstring")),
@@ -65,7 +65,8 @@ def _is_snake(name: str) -> bool:
 def package_problem(name: str, dialect: Dialect) -> str:
     """Why this is no package name; empty if it is one."""
     if dialect == "ros1":
-        # Packages of ROS 1 may carry a dash, though no message in them can then be named from another package.
+        # Packages of ROS 1 may carry a dash, though no message in them can then be named from another
+        # package.
         if _is_word(name.replace("-", "_")):
             return ""
         return "package names are made of letters, digits and underscores and begin with a letter"
@@ -109,13 +110,14 @@ def constant_problem(name: str, dialect: Dialect) -> str:
 def parse_type_name(text: str, kind: Kind = "msg") -> TypeName:
     """The name that `pkg/Name` (then of `kind`) or `pkg/msg/Name` spells.
 
-    Raises InvalidName for anything else. Both dialects' names pass; whether such a type exists is the registry's matter.
+    Raises InvalidName for anything else. Both dialects' names pass; whether such a type exists is the
+    registry's matter.
     """
     parts = text.split("/")
     if len(parts) == 3 and parts[1] in KINDS:
         kind = KINDS[KINDS.index(parts[1])]
     elif len(parts) != 2:
-        raise InvalidName("%r is no type name: expected package/Name or package/msg/Name" % text)
+        raise InvalidName(f"{text!r} is no type name: expected package/Name or package/msg/Name")
     if not _is_word(parts[0].replace("-", "_")) or not _is_word(parts[-1]):
-        raise InvalidName("%r is no type name: packages and names are letters, digits and underscores" % text)
+        raise InvalidName(f"{text!r} is no type name: packages and names are letters, digits and underscores")
     return TypeName(parts[0], kind, parts[-1])

@@ -1,5 +1,5 @@
-"""The values of constants and defaults, as each dialect writes them. Every function raises ValueError with a sentence
-that the parser completes with the place."""
+"""The values of constants and defaults, as each dialect writes them. Every function raises ValueError with a
+sentence that the parser completes with the place."""
 
 from __future__ import annotations
 
@@ -32,7 +32,8 @@ _HEX_ESCAPES = {"x": 2, "u": 4, "U": 8}
 
 
 def scalar_value(dialect: Dialect, type: FieldType, text: str) -> Value:  # noqa: A002
-    """The value that `text` (stripped) has for one element of `type`, a primitive other than time and duration."""
+    """The value that `text` (stripped) has for one element of `type`, a primitive other than time and
+    duration."""
     primitive = type.primitive
     if primitive in INTEGER_RANGES:
         return _integer(dialect, type, text)
@@ -44,7 +45,7 @@ def scalar_value(dialect: Dialect, type: FieldType, text: str) -> Value:  # noqa
         return text
     value = _unquote(text)
     if type.string_bound is not None and len(value) > type.string_bound:
-        raise ValueError("%d characters, %s holds at most %d" % (len(value), type.spelled, type.string_bound))
+        raise ValueError(f"{len(value)} characters, {type.spelled} holds at most {type.string_bound}")
     return value
 
 
@@ -52,7 +53,7 @@ def default_value(type: FieldType, text: str) -> Value:  # noqa: A002
     """The value of a ROS 2 default: a scalar, or for an array type the tuple that `[a, b]` spells."""
     array = type.array
     if type.message is not None:
-        raise ValueError("a field of type %s cannot have a default value" % type)
+        raise ValueError(f"a field of type {type} cannot have a default value")
     if array is None:
         return scalar_value("ros2", type, text)
     if text[0] != "[" or text[-1] != "]" or len(text) < 2:
@@ -64,15 +65,15 @@ def default_value(type: FieldType, text: str) -> Value:  # noqa: A002
     )
     if array.size is not None:
         if array.kind == "fixed" and len(texts) != array.size:
-            raise ValueError("%d values for an array of exactly %d" % (len(texts), array.size))
+            raise ValueError(f"{len(texts)} values for an array of exactly {array.size}")
         if len(texts) > array.size:
-            raise ValueError("%d values for an array of at most %d" % (len(texts), array.size))
+            raise ValueError(f"{len(texts)} values for an array of at most {array.size}")
     values: list[Value] = []
     for index, part in enumerate(texts):
         try:
             values.append(scalar_value("ros2", type, part))
         except ValueError as error:
-            raise ValueError("element %d: %s" % (index, error)) from None
+            raise ValueError(f"element {index}: {error}") from None
     return tuple(values)
 
 
@@ -94,11 +95,11 @@ def _integer(dialect: Dialect, type: FieldType, text: str) -> int:  # noqa: A002
                     pass
     if value is None:
         raise ValueError(
-            "%s is no %s" % (_shown(text), "decimal integer" if dialect == "ros1" else "integer")
+            "{} is no {}".format(_shown(text), "decimal integer" if dialect == "ros1" else "integer")
         )
     low, high = INTEGER_RANGES[type.primitive or ""]
     if not low <= value <= high:
-        raise ValueError("%s does not fit %s: %d to %d" % (_shown(text), type.spelled, low, high))
+        raise ValueError(f"{_shown(text)} does not fit {type.spelled}: {low} to {high}")
     return value
 
 
@@ -108,9 +109,9 @@ def _float(spelled: str, text: str) -> float:
             raise ValueError
         value = float(text)
     except ValueError:
-        raise ValueError("%s is no number" % _shown(text)) from None
+        raise ValueError(f"{_shown(text)} is no number") from None
     if spelled == "float32" and _FLOAT32_LIMIT <= abs(value) < float("inf"):
-        raise ValueError("%s does not fit float32" % _shown(text))
+        raise ValueError(f"{_shown(text)} does not fit float32")
     return value
 
 
@@ -121,7 +122,7 @@ def _bool(dialect: Dialect, text: str) -> bool:
             return True
         if lower in ("false", "0"):
             return False
-        raise ValueError("%s is no bool: true, false, 1 or 0" % _shown(text))
+        raise ValueError(f"{_shown(text)} is no bool: true, false, 1 or 0")
     if text == "True":
         return True
     if text == "False":
@@ -131,7 +132,7 @@ def _bool(dialect: Dialect, text: str) -> bool:
             raise ValueError
         return int(text, 0) != 0
     except ValueError:
-        raise ValueError("%s is no bool: True, False or an integer" % _shown(text)) from None
+        raise ValueError(f"{_shown(text)} is no bool: True, False or an integer") from None
 
 
 def _unquote(text: str) -> str:
@@ -142,9 +143,7 @@ def _unquote(text: str) -> str:
             at = text.find(quote)
             while at >= 0:
                 if at == 0 or text[at - 1] != "\\":
-                    raise ValueError(
-                        "a %s inside %s...%s needs a backslash before it" % (quote, quote, quote)
-                    )
+                    raise ValueError(f"a {quote} inside {quote}...{quote} needs a backslash before it")
                 at = text.find(quote, at + 1)
             break
     return _unescape(text)
@@ -189,7 +188,7 @@ def _code_point(digits: str, base: int, count: int, shown: str) -> str:
             raise ValueError  # half of a surrogate pair: no encoding can carry it
         return chr(code)
     except (ValueError, OverflowError):
-        raise ValueError("%s is no character" % _shown(shown)) from None
+        raise ValueError(f"{_shown(shown)} is no character") from None
 
 
 def _split_strings(text: str) -> list[str]:
@@ -202,19 +201,19 @@ def _split_strings(text: str) -> list[str]:
             while close < end and text[close] != text[at]:
                 close += 2 if text[close] == "\\" else 1
             if close >= end:
-                raise ValueError("element %d: the quote is not closed" % len(texts))
+                raise ValueError(f"element {len(texts)}: the quote is not closed")
             texts.append(text[at : close + 1])
             at = close + 1
             while at < end and text[at] == " ":
                 at += 1
             if at < end and text[at] != ",":
-                raise ValueError("element %d: expected a comma after the closing quote" % len(texts))
+                raise ValueError(f"element {len(texts)}: expected a comma after the closing quote")
         else:
             comma = text.find(",", at)
             stop = comma if comma >= 0 else end
             bare = text[at:stop].strip()
             if not bare:
-                raise ValueError("element %d is empty" % len(texts))
+                raise ValueError(f"element {len(texts)} is empty")
             texts.append(bare)
             at = stop
         at += 1
