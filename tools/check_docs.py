@@ -1,8 +1,8 @@
 """Runs the code blocks of README.md and docs/: `check_docs.py [FILE...]`.
 
-A block that opens with ```python is run in a process of its own, in an empty folder, with a master of ours on
-a free port; it must exit 0 within LIMIT seconds. ```python no-run is only compiled (an excerpt that needs more
-than one machine has). Blocks of other languages are prose.
+A block that opens with ```python is run in a process of its own, in an empty folder, with a master of ours
+on a free port; it must exit 0 within LIMIT seconds. ```python no-run is only compiled (an excerpt that needs
+more than one machine has). Blocks of other languages are prose.
 """
 
 from __future__ import annotations

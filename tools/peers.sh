@@ -20,7 +20,7 @@ wheels() { # NAME REQUIREMENT...
     [ "$(cat "$cache/$name/roslet-stamp" 2>/dev/null || true)" != "$want" ] || return 0
     echo "peers.sh: making $name"
     rm -rf "${cache:?}/$name"
-    if python3 -m venv "$cache/$name" && "$cache/$name/bin/python" -m pip install --quiet "$@"; then
+    if python3 -m venv "$cache/$name" && "$cache/$name/bin/python" -m pip install -qq "$@"; then
         echo "$want" >"$cache/$name/roslet-stamp"
     else
         echo "peers.sh: $name CANNOT BE MADE HERE" >&2

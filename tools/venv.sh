@@ -19,11 +19,11 @@ stamp=.venv/roslet-stamp
 echo "venv.sh: making .venv"
 if command -v uv >/dev/null 2>&1; then
     [ -x .venv/bin/python ] || uv venv --quiet --python "$python" .venv
-    uv pip install --quiet --python .venv/bin/python --editable . --group dev
+    uv pip install -qq --python .venv/bin/python --editable . --group dev
 else
     [ -x .venv/bin/python ] || "$python" -m venv .venv
     # Dependency groups are read by pip since 25.1, and Debian 12 has 23.0.
-    .venv/bin/python -m pip install --quiet 'pip>=25.1'
-    .venv/bin/python -m pip install --quiet --editable . --group dev
+    .venv/bin/python -m pip install -qq 'pip>=25.1'
+    .venv/bin/python -m pip install -qq --editable . --group dev
 fi
 echo "$want" >"$stamp"

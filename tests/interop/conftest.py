@@ -1,0 +1,62 @@
+"""Fixtures of the ROS 1 interop tests: one master a session and kind, long-lived peers a module."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+import peers
+from interop.ros1 import Master, Peer, Tools
+
+if TYPE_CHECKING:
+    import roslet
+
+
+@pytest.fixture(scope="session", params=["debian", "roslet"])
+def master(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Master]:
+    """Debian's rosmaster, then ours in its place."""
+    started = Master(request.param, tmp_path_factory.mktemp(f"{request.param}-master"))
+    yield started
+    started.stop()
+
+
+@pytest.fixture(scope="module")
+def roscpp(master: Master) -> Iterator[Peer]:
+    peer = Peer("roscpp", master)
+    yield peer
+    peer.quit()
+
+
+@pytest.fixture(scope="module")
+def rospy(master: Master) -> Iterator[Peer]:
+    peer = Peer("rospy", master)
+    yield peer
+    peer.quit()
+
+
+@pytest.fixture(scope="module")
+def tools(master: Master, tmp_path_factory: pytest.TempPathFactory) -> Tools:
+    return Tools(master, tmp_path_factory.mktemp("tools"))
+
+
+_numbers = itertools.count()
+
+
+@pytest.fixture
+def topic() -> str:
+    """A topic, service or parameter name that no other test uses."""
+    return f"/name_{next(_numbers)}"
+
+
+@pytest.fixture(scope="module")
+def node(master: Master) -> Iterator[roslet.Node]:
+    """A node of ours, spinning in the background, with the messages of the peers loaded as a user loads them."""
+    import roslet
+
+    roslet.load(str(peers.WORKSPACE))
+    with roslet.Node("roslet_node", network=master.network) as started:
+        started.start()
+        yield started
