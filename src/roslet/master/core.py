@@ -3,7 +3,8 @@
 Source: ROS Master API, ROS Parameter Server API, and the answers of Debian's rosmaster, with which a test
 compares these. Every method takes the caller's name first and answers `[code, message, value]`: code 1 is
 success, 0 a failure of the master, -1 a fault of the caller. What other nodes have to be told is collected as
-`Notification`s."""
+`Notification`s.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +29,8 @@ class Notification(Record):
     """A call that a node is due: `method(*params)` at the slave API `api`.
 
     `key` names what it is about: of several that wait for one node with equal method and key only the newest
-    matters, because each tells the whole state."""
+    matters, because each tells the whole state.
+    """
 
     _fields = ("api", "method", "key", "params")
     __slots__ = _fields
@@ -45,7 +47,7 @@ class InvalidArgumentError(Exception):
 
 
 class _Registrations:
-    """Who provides what: name of a topic, service or parameter to nodes, in the order of their registration."""
+    """Who provides what: topic, service or parameter to nodes, in the order of their registration."""
 
     def __init__(self) -> None:
         self._nodes: dict[str, list[Node]] = {}
@@ -150,7 +152,7 @@ class Master:
         return reply
 
     def take_notifications(self) -> list[Notification]:
-        """What is to be delivered since the last call: in order for each node, independently between nodes."""
+        """What is to be delivered since the last call, in order for each node."""
         taken = self._notifications
         self._notifications = []
         return taken
@@ -349,7 +351,7 @@ class Master:
 
 
 def resolve(name: str, caller: str) -> str:
-    """The global form of `name` for the node `caller`. As lenient as rosmaster: no character is refused here."""
+    """The global form of `name` for the node `caller`; as lenient as rosmaster."""
     if not name:
         return namespace_of(caller)
     name = canonical(name)

@@ -62,7 +62,7 @@ class ParameterTree:
         namespace[path[-1]] = value
 
     def delete(self, key: str) -> None:
-        """Remove the value or the namespace `key`. Raises KeyError where it is not there, and for the root."""
+        """Remove the value or namespace `key`. Raises KeyError where it is not there, and for the root."""
         path = steps(key)
         if not path:
             raise KeyError(key)
@@ -76,7 +76,8 @@ class ParameterTree:
         is none.
 
         Only the first step of `key` is looked for, so the name returned need not exist. Raises ValueError for
-        an empty or private key and for a namespace that is not global."""
+        an empty or private key and for a namespace that is not global.
+        """
         if not key or key.startswith("~"):
             raise ValueError(f"cannot search for {key!r}")
         if not namespace.startswith("/"):
@@ -119,7 +120,8 @@ def changes(
 
     Each entry is (the subscribed key, the key that the update names, its value). A subscriber of `key` or of
     a namespace around it is told the key that changed; one of a key inside it is told its own new value. The
-    empty dictionary means that the key is gone."""
+    empty dictionary means that the key is gone.
+    """
     changed = subscription_key(key)
     told = {} if deleted else value
     found: list[tuple[str, str, Value]] = []

@@ -2,7 +2,8 @@
 
 Nothing a client does ends the server, and no node waits for another: each node that is due notifications has
 its own bounded queue, its own connection and its own timeouts. A node that cannot be reached stays
-registered, as with rosmaster: it may only be slow, and its own registrations are its own to withdraw."""
+registered, as with rosmaster: it may only be slow, and its own registrations are its own to withdraw.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +54,8 @@ class MasterServer:
     Raises OSError where it cannot listen. It runs on `reactor`, or on the process's own loop, which has a
     background thread: nobody needs to spin. `uri` is what nodes use as ROS_MASTER_URI; it names
     $ROS_HOSTNAME, $ROS_IP, `host` where that is one address, or this machine's name. `stopped` is set by
-    `close` and by a client's shutdown call."""
+    `close` and by a client's shutdown call.
+    """
 
     def __init__(
         self,
@@ -91,7 +93,7 @@ class MasterServer:
         return len(self._streams)
 
     def call(self, method: str, *params: Any) -> list[Any]:
-        """Call the master from within the process, as a client would: `call("setParam", "/me", "/key", 1)`."""
+        """Call the master from within the process: `call("setParam", "/me", "/key", 1)`."""
         with self.reactor.lock:
             reply = self.master.call(method, params)
             self._deliver_soon()

@@ -39,19 +39,22 @@ if TYPE_CHECKING:
 
 MAX_DEPTH = 64
 """Arrays and structs inside each other; ROS parameter trees are some five deep. Both ways, so that what was
-received can be sent again."""
+received can be sent again.
+"""
 
 MAX_DOCUMENT = 16 * 1024 * 1024
 """Bytes of one document; the same bound as `http.MAX_BODY`."""
 
 MAX_TAGS = 2_000_000
 """Tags of one document. A tag costs some 60 bytes while parsing, so this bounds the memory; it allows half a
-million numbers in one parameter."""
+million numbers in one parameter.
+"""
 
 
 class DateTime:
     """An ISO 8601 time as XML-RPC writes it, such as `19980717T14:08:55`; kept as text, for ROS gives it no
-    meaning."""
+    meaning.
+    """
 
     __slots__ = ("value",)
 

@@ -25,11 +25,13 @@ if TYPE_CHECKING:
 
 REQUEST_TIMEOUT = 30.0
 """Seconds from the first byte of a request to its last, and from accepting to the first byte. A client that
-trickles a request would otherwise hold a descriptor for ever."""
+trickles a request would otherwise hold a descriptor for ever.
+"""
 
 IDLE_TIMEOUT = 300.0
 """Seconds that a server keeps a connection without a request. rospy and roscpp keep theirs open between calls
-and reconnect silently when it has been closed."""
+and reconnect silently when it has been closed.
+"""
 
 MAX_PIPELINED = 32
 """Requests that a client may send ahead of the answers. No ROS peer sends more than one."""
