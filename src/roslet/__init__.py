@@ -1,12 +1,11 @@
 """A ROS node where ROS itself cannot go."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
-
 from roslet.errors import RosletError
 
+TYPE_CHECKING = False  # MicroPython, which imports this too, has neither typing nor __future__
 if TYPE_CHECKING:
+    from typing import Any
+
     from roslet.gen.runtime import load
     from roslet.node.clock import Rate, Timer
     from roslet.node.node import Node
@@ -47,7 +46,7 @@ _HOMES = {
 }
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> "Any":
     """Import a public name when it is first used: a program that needs one pays for one."""
     home = _HOMES.get(name)
     if home is None:

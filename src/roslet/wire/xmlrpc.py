@@ -29,6 +29,7 @@ prescribes.
 import binascii
 
 from roslet.errors import Fault, InvalidMessage, ProtocolError
+from roslet.wire.xmltext import escape, find_control, printable, to_utf8, unescape
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -71,25 +72,18 @@ class DateTime:
         return "DateTime(%r)" % self.value
 
 
-# ----------------------------------------------------------------------------------------------------------
-# emitting
+# -- emitting
 
 _CALL = '<?xml version="1.0"?>\n<methodCall><methodName>%s</methodName><params>'
 _RESPONSE = '<?xml version="1.0"?>\n<methodResponse><params><param>'
 _FAULT = '<?xml version="1.0"?>\n<methodResponse><fault>'
-
-# XML 1.0 section 2.2: no document may hold these, not even as character references.
-_CONTROL = bytes([code for code in range(32) if code not in (9, 10, 13)])
-
-# MicroPython has no bytes.translate, with which CPython finds a control character in one pass.
-_TRANSLATE = hasattr(b"", "translate")
 
 _SPACES = (b" ", b"\t", b"\r", b"\n")
 
 
 def emit_call(method: str, params: "list[Any] | tuple[Any, ...]") -> bytes:
     """The document that calls `method`. Raises InvalidMessage for a value that cannot be sent."""
-    out = [_CALL % _escape(method)]
+    out = [_CALL % escape(method)]
     index = 0
     try:
         for value in params:
@@ -116,15 +110,10 @@ def emit_response(value: "Any") -> bytes:
 
 def emit_fault(code: int, message: str) -> bytes:
     """The document that answers with a fault. Characters that XML cannot carry become question marks."""
-    safe = "".join([char if _carried(char) else "?" for char in message])
     out = [_FAULT]
-    _emit({"faultCode": code, "faultString": safe}, out, 0)
+    _emit({"faultCode": code, "faultString": printable(message)}, out, 0)
     out.append("</fault></methodResponse>")
     return _encode(out)
-
-
-def _carried(char: str) -> bool:
-    return (char >= " " or char in "\t\n\r") and not 0xD800 <= ord(char) <= 0xDFFF
 
 
 def _encode(out: "list[str]") -> bytes:
@@ -132,41 +121,21 @@ def _encode(out: "list[str]") -> bytes:
         data = "".join(out).encode()
     except UnicodeError:
         raise InvalidMessage("text with a lone surrogate cannot be sent as XML") from None
-    control = _find_control(data)
+    control = find_control(data)
     if control >= 0:
         raise InvalidMessage("text with the control character 0x%02x cannot be sent as XML" % control)
     return data
-
-
-def _find_control(data: bytes) -> int:
-    """The code of a control character in `data`, or -1."""
-    if _TRANSLATE and len(data.translate(None, _CONTROL)) == len(data):
-        return -1
-    for code in _CONTROL:
-        if code in data:
-            return code
-    return -1
 
 
 def _within(step: str, error: InvalidMessage) -> InvalidMessage:
     return InvalidMessage(error.message, step + error.path)
 
 
-def _escape(text: str) -> str:
-    if "&" in text:
-        text = text.replace("&", "&amp;")
-    if "<" in text:
-        text = text.replace("<", "&lt;")
-    if ">" in text:
-        text = text.replace(">", "&gt;")
-    return text
-
-
 def _emit(value: "Any", out: "list[str]", depth: int) -> None:
     """Append one value. Recursive, and bounded by MAX_DEPTH."""
     kind = type(value)
     if kind is str:
-        out.append("<value><string>%s</string></value>" % _escape(value))
+        out.append("<value><string>%s</string></value>" % escape(value))
     elif kind is bool:
         out.append("<value><boolean>1</boolean></value>" if value else "<value><boolean>0</boolean></value>")
     elif kind is int:
@@ -188,7 +157,7 @@ def _emit(value: "Any", out: "list[str]", depth: int) -> None:
         text = binascii.b2a_base64(value).decode().strip()
         out.append("<value><base64>%s</base64></value>" % text)
     elif kind is DateTime:
-        out.append("<value><dateTime.iso8601>%s</dateTime.iso8601></value>" % _escape(value.value))
+        out.append("<value><dateTime.iso8601>%s</dateTime.iso8601></value>" % escape(value.value))
     else:
         _emit_subclass(value, out, depth)
 
@@ -214,7 +183,7 @@ def _emit_struct(value: "dict[str, Any]", out: "list[str]", depth: int) -> None:
     for key, item in value.items():
         if not isinstance(key, str):
             raise InvalidMessage("a struct needs str keys, got %r" % (key,))
-        out.append("<member><name>%s</name>" % _escape(key))
+        out.append("<member><name>%s</name>" % escape(key))
         try:
             _emit(item, out, depth)
         except InvalidMessage as error:
@@ -233,8 +202,7 @@ def _emit_subclass(value: "Any", out: "list[str]", depth: int) -> None:
     raise InvalidMessage("a value of type %s cannot be sent as XML-RPC" % type(value).__name__)
 
 
-# -----------------------------------------------------------------------------------------------------------
-# parsing
+# -- parsing
 
 
 def parse_call(data: "Buffer") -> "tuple[str, list[Any]]":
@@ -305,8 +273,8 @@ def _split(data: "Buffer") -> "list[bytes]":
         declaration = data[start:end].lower()
         start = end + 2
     prefix = data[:start]
-    data = _utf8(data[start:] if start else data, declaration)
-    control = _find_control(data)
+    data = to_utf8(data[start:] if start else data, declaration)
+    control = find_control(data)
     if control >= 0:
         raise ProtocolError("control_character", "0x%02x in the document" % control)
     if data.count(b"<") > MAX_TAGS:
@@ -320,23 +288,6 @@ def _split(data: "Buffer") -> "list[bytes]":
         raise ProtocolError("unexpected_text", "at byte %d: text before the root element" % start)
     pieces[0] = prefix + pieces[0]
     return pieces
-
-
-def _utf8(data: bytes, declaration: bytes) -> bytes:
-    """The document in UTF-8. All encodings but UTF-8 and Latin-1 are refused."""
-    at = declaration.find(b"encoding")
-    name = b"utf-8"
-    if at >= 0:
-        name = declaration[at + 8 :].strip(b" \t\r\n=\"'").split(b'"')[0].split(b"'")[0]
-    if name in (b"utf-8", b"utf8", b"us-ascii"):
-        try:
-            data.decode()
-        except UnicodeError:
-            raise ProtocolError("bad_encoding", "the document is not UTF-8") from None
-        return data
-    if name in (b"iso-8859-1", b"latin-1", b"latin1"):
-        return "".join([chr(byte) for byte in data]).encode()
-    raise ProtocolError("bad_encoding", "encoding %r" % name[:40])
 
 
 def _offset(pieces: "list[bytes]", at: int) -> int:
@@ -522,12 +473,11 @@ def _string(pieces: "list[bytes]", at: int, text: bytes) -> str:
         raise _fail(pieces, at, error.reason, error.message) from None
 
 
-# Text of one element to its value. The document is known to be UTF-8, and it was cut only at ASCII
-# characters.
+# Text of one element to its value. The document is known to be UTF-8 and was cut only at ASCII characters.
 
 
 def _read_string(text: bytes) -> str:
-    return _unescape(text.decode()) if b"&" in text else text.decode()
+    return unescape(text.decode()) if b"&" in text else text.decode()
 
 
 def _read_int(text: bytes) -> int:
@@ -590,36 +540,3 @@ _READERS: "dict[bytes, Callable[[bytes], Any]]" = {
 }
 _CLOSERS = {_tag: b"/" + _tag + b">" for _tag in _READERS}
 _EMPTY = {b"string/": "", b"base64/": b"", b"nil/": None, b"ex:nil/": None}
-
-_ENTITIES = {"lt": "<", "gt": ">", "amp": "&", "apos": "'", "quot": '"'}
-
-
-def _unescape(text: str) -> str:
-    """`text` with its entities and character references replaced. Raises ProtocolError for any other."""
-    parts = text.split("&")
-    out = [parts[0]]
-    for part in parts[1:]:
-        name, found, rest = part.partition(";")
-        char = _ENTITIES.get(name)
-        if char is None:
-            char = _referred(name) if found else ""
-        if not char or not found:
-            raise ProtocolError("bad_entity", "&%s" % part[:12])
-        out.append(char)
-        out.append(rest)
-    return "".join(out)
-
-
-def _referred(name: str) -> str:
-    """The character of `#233` or `#xe9`; empty where XML 1.0 has none (section 2.2)."""
-    digits = name[2:] if name[1:2] in ("x", "X") else name[1:]
-    base = 16 if name[1:2] in ("x", "X") else 10
-    if name[:1] != "#" or not 0 < len(digits) <= 8:
-        return ""
-    for digit in digits:
-        if digit not in ("0123456789abcdefABCDEF" if base == 16 else "0123456789"):
-            return ""
-    code = int(digits, base)
-    if code in (9, 10, 13) or 32 <= code < 0xD800 or 0xE000 <= code < 0xFFFE or 0x10000 <= code <= 0x10FFFF:
-        return chr(code)
-    return ""
