@@ -53,7 +53,7 @@ def topic() -> str:
 
 @pytest.fixture(scope="module")
 def node(master: Master) -> Iterator[roslet.Node]:
-    """A node of ours, spinning in the background, with the messages of the peers loaded as a user loads them."""
+    """A node of ours that spins in the background; the messages of the peers are loaded as a user does."""
     import roslet
 
     roslet.load(str(peers.WORKSPACE))

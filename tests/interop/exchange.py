@@ -12,6 +12,7 @@ import roslet
 from interop.cases import Case
 from interop.peers import samples
 from interop.ros1 import Peer, wait_until
+from roslet import Node
 
 
 def make(name: str) -> Any:
@@ -43,7 +44,7 @@ class Inbox:
         return list(self.messages)
 
 
-def receive(node: roslet.Node, peer: Peer, case: Case, topic: str) -> None:
+def receive(node: Node, peer: Peer, case: Case, topic: str) -> None:
     """The peer publishes, our node receives every message whole and in order."""
     inbox = Inbox()
     peer.ask(f"advertise {case.type} {topic} 0", f"advertised {topic}")
@@ -59,7 +60,7 @@ def receive(node: roslet.Node, peer: Peer, case: Case, topic: str) -> None:
     peer.ask(f"unadvertise {topic}", f"unadvertised {topic}")
 
 
-def send(node: roslet.Node, peer: Peer, case: Case, topic: str) -> None:
+def send(node: Node, peer: Peer, case: Case, topic: str) -> None:
     """Our node publishes, the peer says of every message that it is the one expected."""
     with node.publisher(topic, case.type) as publisher:
         peer.ask(f"subscribe {case.type} {topic} {case.size}", f"subscribed {topic}")
@@ -71,7 +72,7 @@ def send(node: roslet.Node, peer: Peer, case: Case, topic: str) -> None:
     peer.ask(f"unsubscribe {topic}", f"unsubscribed {topic}")
 
 
-def latched_to_us(node: roslet.Node, peer: Peer, topic: str) -> None:
+def latched_to_us(node: Node, peer: Peer, topic: str) -> None:
     """What a latched publisher sent before we subscribed still reaches us, once."""
     inbox = Inbox()
     peer.ask(f"advertise std_msgs/String {topic} 1", f"advertised {topic}")
@@ -83,7 +84,7 @@ def latched_to_us(node: roslet.Node, peer: Peer, topic: str) -> None:
     peer.ask(f"unadvertise {topic}", f"unadvertised {topic}")
 
 
-def latched_to_peer(node: roslet.Node, peer: Peer, topic: str) -> None:
+def latched_to_peer(node: Node, peer: Peer, topic: str) -> None:
     with node.publisher(topic, "std_msgs/String", qos=roslet.QoS(durability="transient_local")) as publisher:
         publisher.publish(message("std_msgs/String", 3, 10))
         publisher.publish(message("std_msgs/String", 0, 10))
@@ -92,7 +93,7 @@ def latched_to_peer(node: roslet.Node, peer: Peer, topic: str) -> None:
         peer.ask(f"unsubscribe {topic}", f"unsubscribed {topic}")
 
 
-def sequence_to_us(node: roslet.Node, peer: Peer, topic: str) -> None:
+def sequence_to_us(node: Node, peer: Peer, topic: str) -> None:
     """A publisher numbers the headers of what it sends: we keep the numbers."""
     inbox = Inbox()
     peer.ask(f"advertise peer_msgs/Stamps {topic} 0", f"advertised {topic}")
@@ -106,7 +107,54 @@ def sequence_to_us(node: roslet.Node, peer: Peer, topic: str) -> None:
     peer.ask(f"unadvertise {topic}", f"unadvertised {topic}")
 
 
-def peer_returns(node: roslet.Node, peer: Peer, topic: str) -> None:
+def datagrams_to_us(node: Node, peer: Peer, topic: str, size: int) -> None:
+    """Over UDPROS nothing is promised to arrive: the peer sends until five did; each must be whole."""
+    inbox = Inbox()
+    peer.ask(f"advertise std_msgs/String {topic} 0", f"advertised {topic}")
+    subscription = node.subscribe(topic, "std_msgs/String", inbox, qos=roslet.QoS(reliability="best_effort"))
+    wait_until(lambda: peer.subscribers(topic) == 1, "our subscription reaches the peer")
+    for _ in range(200):
+        peer.ask(f"publish {topic} 7 {size}", f"published {topic}")
+        if len(inbox.messages) >= 5:
+            break
+    expected = samples.sample("std_msgs/String", 7, size)["data"]
+    assert {each.data for each in inbox.wait(5)} == {expected}
+    assert "UDPROS" in transports(node, topic)
+    subscription.close()
+    peer.ask(f"unadvertise {topic}", f"unadvertised {topic}")
+
+
+def datagrams_to_peer(node: Node, peer: Peer, topic: str, size: int) -> None:
+    with node.publisher(topic, "std_msgs/String") as publisher:
+        peer.ask(f"subscribe std_msgs/String {topic} {size} udp", f"subscribed {topic}")
+        wait_until(lambda: publisher.subscriber_count == 1, "the peer subscribes")
+        for i in range(5):
+            publisher.publish(message("std_msgs/String", i, size))
+            wait_until(lambda i=i: len(peer.told(f"got {topic} ")) > i, "the datagrams of one message arrive")
+        assert peer.told(f"got {topic} ") == [f"got {topic} {i} ok" for i in range(5)]
+        assert "UDPROS" in transports(node, topic)
+    peer.ask(f"unsubscribe {topic}", f"unsubscribed {topic}")
+
+
+def falls_back(node: Node, peer: Peer, topic: str) -> None:
+    """rospy speaks no UDPROS: a best-effort subscription then takes what there is."""
+    inbox = Inbox()
+    peer.ask(f"advertise std_msgs/String {topic} 0", f"advertised {topic}")
+    subscription = node.subscribe(topic, "std_msgs/String", inbox, qos=roslet.QoS(reliability="best_effort"))
+    wait_until(lambda: peer.subscribers(topic) == 1, "our subscription reaches the peer")
+    peer.say(f"publish {topic} 0 5")
+    inbox.wait(1)
+    assert transports(node, topic) == {"TCPROS"}
+    subscription.close()
+    peer.ask(f"unadvertise {topic}", f"unadvertised {topic}")
+
+
+def transports(node: Node, topic: str) -> set[str]:
+    """What our own getBusInfo says of a topic's connections."""
+    return {row[3] for row in node.call_node(node.uri, "getBusInfo") if row[4] == topic}
+
+
+def peer_returns(node: Node, peer: Peer, topic: str) -> None:
     """A publisher that goes and returns is found again, and its counts follow."""
     inbox = Inbox()
     subscription = node.subscribe(topic, "std_msgs/String", inbox)
@@ -122,7 +170,7 @@ def peer_returns(node: roslet.Node, peer: Peer, topic: str) -> None:
     subscription.close()
 
 
-def calls_from_us(node: roslet.Node, peer: Peer, name: str, persistent: bool) -> None:
+def calls_from_us(node: Node, peer: Peer, name: str, persistent: bool) -> None:
     """We call the peer's service: every reply is whole, a refusal raises, and the next call works again."""
     peer.ask(f"serve {name}", f"serving {name}")
     client = node.client(name, "peer_msgs/Scale", persistent=persistent)
@@ -148,7 +196,7 @@ def on_scale(request: Any) -> dict[str, Any]:
     return {"points": request.points, "text": f"scaled {len(request.points)}"}
 
 
-def calls_to_us(node: roslet.Node, peer: Peer, name: str, persistent: bool) -> None:
+def calls_to_us(node: Node, peer: Peer, name: str, persistent: bool) -> None:
     """The peer calls our service: it finds every response right, and is told when our handler raises."""
     service = node.service(name, "peer_msgs/Scale", on_scale)
     kept = int(persistent)
@@ -172,7 +220,7 @@ PARAMETERS: list[tuple[str, Any, str, str]] = [  # kind, value, how a command sp
 ]
 
 
-def parameters_to_peer(node: roslet.Node, peer: Peer, name: str) -> None:
+def parameters_to_peer(node: Node, peer: Peer, name: str) -> None:
     for kind, value, _, told in PARAMETERS:
         node.set_parameter(name, value)
         assert peer.ask(f"get {name} {kind}", f"value {name} {kind}") == told
@@ -180,7 +228,7 @@ def parameters_to_peer(node: roslet.Node, peer: Peer, name: str) -> None:
     assert peer.ask(f"get {name} int", f"missing {name}") == ""
 
 
-def parameters_to_us(node: roslet.Node, peer: Peer, name: str) -> None:
+def parameters_to_us(node: Node, peer: Peer, name: str) -> None:
     """What a peer sets we read, and are told of at once where we asked to be."""
     told: list[Any] = []
     node.on_parameter(name, told.append)

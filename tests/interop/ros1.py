@@ -56,14 +56,16 @@ class Master:
         self.start()
 
     def start(self) -> None:
+        environment = self.environment()
         if self.kind == "debian":
             program = str(peers.require("rosmaster"))
             command = [str(peers.DEBIAN_PYTHON), program, "--core", "-p", str(self.port)]
         else:
-            command = [sys.executable, "-m", "roslet.cli.main", "master", "--port", str(self.port)]
-        self._log = open(self.folder / f"master-{self.kind}.log", "ab")  # noqa: SIM115 - lives as long as the process
+            environment["PYTHONPATH"] = str(peers.ROOT / "src")
+            command = [sys.executable, "-c", f"from roslet.master.server import run; run(port={self.port})"]
+        self._log = open(self.folder / f"master-{self.kind}.log", "ab")  # noqa: SIM115 - as long as the process
         self.process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=self._log, stderr=self._log, env=self.environment()
+            command, stdin=subprocess.DEVNULL, stdout=self._log, stderr=self._log, env=environment
         )
         wait_until(
             lambda: answers(self.port) or self.process.poll() is not None, f"the {self.kind} master starts"
