@@ -3,7 +3,7 @@
 Source: ROS 1 graph resource names and name resolution. Runs on MicroPython.
 """
 
-from roslet.errors import InvalidName
+from roslet.errors import InvalidName, Unsupported
 
 _LETTERS = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
 _DIGITS = "0123456789"
@@ -12,6 +12,9 @@ _REST = _LETTERS + _DIGITS + "_/"
 
 # Longer names are refused: no real graph has them, and a name is copied into every header and log line.
 MAX_NAME = 4096
+
+# Where a ROS 1 master is when nobody says otherwise.
+DEFAULT_MASTER = "http://localhost:11311"
 
 
 def check_name(name: str) -> str:
@@ -134,3 +137,23 @@ def parse_host_port(uri: str) -> "tuple[str, int]":
     if host.startswith("[") and host.endswith("]"):
         host = host[1:-1]
     return host, int(port)
+
+
+def parse_network(network: "str | None", master: "str | None" = None) -> "tuple[str, str]":
+    """The URL of a network in full, and the URI of its master.
+
+    `network` is "ros1://host:port", "ros1://host" for port 11311, or "ros1://" for `master` (what
+    $ROS_MASTER_URI holds; localhost where that is empty too). Raises Unsupported for the ROS 2 network,
+    InvalidName for anything else.
+    """
+    if network is None or network.startswith("ros2:"):
+        raise Unsupported('the ROS 2 network is not there yet; use network="ros1://host:port" or "ros1://"')
+    scheme, found, rest = network.partition("://")
+    if scheme != "ros1" or not found:
+        raise InvalidName("%r is no network; write ros1://host:port" % network)
+    if not rest:
+        network = master or DEFAULT_MASTER
+    elif ":" not in rest:
+        network = network.rstrip("/") + ":11311"
+    host, port = parse_host_port(network)
+    return "ros1://%s:%d" % (host, port), "http://%s:%d" % (host, port)

@@ -14,7 +14,6 @@ from roslet.engine.ros1.engine import Engine
 from roslet.errors import (
     CallTimeout,
     Fault,
-    InvalidName,
     NodeClosed,
     ParameterNotSet,
     RosletError,
@@ -22,7 +21,7 @@ from roslet.errors import (
 )
 from roslet.io.ros1 import Ros1Shell, own_host
 from roslet.io.select import Reactor, reactor
-from roslet.names import Arguments, check_base_name, join, parse_host_port, resolve
+from roslet.names import Arguments, check_base_name, join, parse_host_port, parse_network, resolve
 from roslet.node.clock import Clock, Rate, Timer
 from roslet.node.future import Future
 from roslet.node.log import Log
@@ -44,7 +43,6 @@ REGISTER_TIMEOUT = 2.0
 CALL_TIMEOUT = 10.0
 # Seconds that closing a node gives the master to hear of it.
 CLOSE_TIMEOUT = 0.5
-DEFAULT_MASTER = "http://localhost:11311"
 _MISSING: Any = object()
 
 _open_nodes: weakref.WeakSet[Node] = weakref.WeakSet()
@@ -84,7 +82,9 @@ class Node:
         namespace = given.specials.get("ns") or namespace or env.get("ROS_NAMESPACE", "")
         self.name = join("/", join(namespace.lstrip("/"), name)) if namespace.strip("/") else "/" + name
         self.namespace = self.name[: self.name.rfind("/")] or "/"
-        self.network, master_uri = _network(network, given.specials.get("master"), env)
+        self.network, master_uri = parse_network(
+            network, given.specials.get("master") or env.get("ROS_MASTER_URI")
+        )
         self._remappings = given.resolved(self.name)
         host = given.specials.get("hostname") or given.specials.get("ip")
         host = host or own_host(dict(env), parse_host_port(master_uri)[0])
@@ -556,21 +556,6 @@ def _into(future: Future[Any]) -> Callable[[object, Exception | None, float], No
             future.set_exception(error)
 
     return done
-
-
-def _network(network: str | None, master: str | None, env: Mapping[str, str]) -> tuple[str, str]:
-    """The network's URL in full, and the master's URI."""
-    if network is None or network.startswith("ros2:"):
-        raise Unsupported('the ROS 2 network is not there yet; use network="ros1://host:port" or "ros1://"')
-    scheme, found, rest = network.partition("://")
-    if scheme != "ros1" or not found:
-        raise InvalidName(f"{network!r} is no network; write ros1://host:port")
-    if not rest:
-        uri = master or env.get("ROS_MASTER_URI") or DEFAULT_MASTER
-        host, port = parse_host_port(uri)
-    else:
-        host, port = parse_host_port(network if ":" in rest else network.rstrip("/") + ":11311")
-    return f"ros1://{host}:{port}", f"http://{host}:{port}"
 
 
 def _qos(qos: QoS | int | None) -> QoS:
