@@ -21,8 +21,6 @@ def md5sum(registry: Registry, name: TypeName | str) -> str:
     _refuse_ros2(registry)
     interface = registry.interface(name)
     sums: dict[TypeName, str] = {}
-    # Dependencies come before what is made of them when the list is walked from its end, but for diamonds;
-    # hence twice.
     for message in _inner_first(registry, interface):
         sums[message.name] = _digest(_md5_text(message, sums))
     if isinstance(interface, Message):

@@ -1,10 +1,9 @@
-"""Text of .msg, .srv and .action files to records. No I/O; every error is a DefinitionError with line and
-column.
+"""Text of .msg, .srv and .action files to records. No I/O; every error is a DefinitionError with its place.
 
-ROS 1: http://wiki.ros.org/msg, /srv and actionlib's .action; a line is `type name` or `type NAME=value`. ROS
-2: the interface definition of its documentation; a line is `type name [default]` or `type NAME=value`, types
-may be bounded. In both, `#` begins a comment, except in a ROS 1 string constant, whose value is the whole
-rest of the line.
+ROS 1 (http://wiki.ros.org/msg, /srv, and actionlib's .action): a line is `type name` or `type NAME=value`.
+ROS 2 (the interface page of its documentation): a line is `type name`, `type name default` or
+`type NAME=value`, and types may be bounded.
+In both, `#` begins a comment, except in a ROS 1 string constant, whose value is the whole rest of the line.
 """
 
 from __future__ import annotations
@@ -30,7 +29,11 @@ if TYPE_CHECKING:
 # Lengths of arrays and strings travel as 32-bit counts, so no bound can be greater.
 MAXIMUM_BOUND = 0xFFFFFFFF
 
+# Error messages quote no more of a text than this.
+_QUOTED = 60
+
 _SEPARATOR = "---"
+_SEPARATOR_RULE = "the separator is a line that holds --- and begins with it"
 _UNSUPPORTED_ROS2 = {"time": "builtin_interfaces/Time", "duration": "builtin_interfaces/Duration"}
 
 
@@ -115,6 +118,11 @@ class _Reader:
         if len(parts) > count:
             self.fail("one line --- too many: " + rule, 1, parts[count][1] - 1)
         if len(parts) < count:
+            for text, first_line in parts:
+                for line, code in enumerate(text.split("\n"), first_line):
+                    if code.lstrip().startswith(_SEPARATOR):
+                        column = len(code) - len(code.lstrip()) + 1
+                        self.fail(_SEPARATOR_RULE, column, line)
             last_text, first_line = parts[-1]
             last_line = first_line + last_text.rstrip("\n").count("\n")
             self.fail("a line --- is missing: " + rule, 1, last_line)
@@ -182,14 +190,14 @@ class _Reader:
         if word.startswith(_SEPARATOR):
             if self.name.kind == "msg":
                 self.fail("lines --- belong to .srv and .action files", at + 1)
-            self.fail("the separator is a line that holds --- and begins with it", at + 1)
-        self.fail(f"expected a name after the type {word}", at + len(word) + 1)
+            self.fail(_SEPARATOR_RULE, at + 1)
+        self.fail(f"expected a name after the type {_quoted(word)}", at + len(word) + 1)
 
     def field(self, spelled: str, type_at: int, name: str, name_at: int, after: str, after_at: int) -> Field:
         type_ = self.type(spelled, type_at)
         problem = field_problem(name, self.dialect) if name else "the name is missing"
         if problem:
-            self.fail(f"{name or after} is no field name: {problem}", name_at + 1)
+            self.fail(f"{_quoted(name or after)} is no field name: {problem}", name_at + 1)
         if not after:
             return Field(name, type_, None, self.line)
         if self.dialect == "ros1":
@@ -209,11 +217,11 @@ class _Reader:
         if type_ is None or spelled in _UNSUPPORTED_ROS2:
             self.type(spelled, type_at)  # a spelling mistake is the better error
             self.fail(
-                f"constants have a primitive type without bounds or brackets, not {spelled}", type_at + 1
+                f"a constant is a number, a bool or a string, not of type {_quoted(spelled)}", type_at + 1
             )
         problem = constant_problem(name, self.dialect) if name else "the name is missing"
         if problem:
-            self.fail(f"{name or after} is no constant name: {problem}", name_at + 1)
+            self.fail(f"{_quoted(name or after)} is no constant name: {problem}", name_at + 1)
         text = after[1:].strip()
         try:
             value: Value = scalar_value(self.dialect, type_, text)
@@ -234,13 +242,14 @@ class _Reader:
             base = spelled[:bracket]
             array = self.array(spelled[bracket + 1 : -1], at + bracket + 1)
         elif "[" in spelled or "]" in spelled:
-            self.fail(f"{spelled}: brackets do not match", at + 1 + max(spelled.find("["), 0))
+            self.fail(f"{_quoted(spelled)}: brackets do not match", at + 1 + max(spelled.find("["), 0))
         simple = self.primitives.get(base)
         if simple is not None:
             return FieldType(simple.primitive, None, base, None, array)
         if "[" in base or "]" in base:
             self.fail(
-                f"{spelled}: arrays have one dimension", at + base.find("[" if "[" in base else "]") + 1
+                f"{_quoted(spelled)}: arrays have one dimension",
+                at + base.find("[" if "[" in base else "]") + 1,
             )
         less = base.find("<")
         if less >= 0:
@@ -260,7 +269,7 @@ class _Reader:
 
     def size(self, digits: str, at: int, minimum: int) -> int:
         if not digits.isdecimal() or not digits.isascii():
-            self.fail(f"expected a size in decimal digits, not {digits[:40]!r}", at + 1)
+            self.fail(f"expected a size in decimal digits, not {_quoted(digits)}", at + 1)
         # The text of an array type enters the MD5 of ROS 1, where 03 and 3 would differ.
         if len(digits) > 1 and digits[0] == "0":
             self.fail("a size has no leading zeros", at + 1)
@@ -271,7 +280,7 @@ class _Reader:
     def bounded_string(self, base: str, less: int, at: int, array: Array | None) -> FieldType:
         spelled = base[:less]
         if spelled not in ("string", "wstring"):
-            self.fail(f"only string and wstring have a bound, not {spelled or base}", at + less + 1)
+            self.fail(f"only string and wstring have a bound, not {_quoted(spelled or base)}", at + less + 1)
         if self.dialect == "ros1":
             self.fail("ROS 1 has no bounded strings", at + less + 1)
         if base[less : less + 2] != "<=":
@@ -289,13 +298,13 @@ class _Reader:
         if not slash:
             package, name = self.name.package, base
         elif "/" in name:
-            self.fail(f"{base} is no type name: expected package/Name", at + 1)
+            self.fail(f"{_quoted(base)} is no type name: expected package/Name", at + 1)
         problem = package_problem(package, dialect) if package else "the package is missing"
         if problem:
-            self.fail(f"{base} is no type name: {problem}", at + 1)
+            self.fail(f"{_quoted(base)} is no type name: {problem}", at + 1)
         problem = interface_problem(name, dialect) if name else "the name is missing"
         if problem:
-            self.fail(f"{base} is no type: {problem}", at + len(base) - len(name) + 1)
+            self.fail(f"{_quoted(base)} is no type: {problem}", at + len(base) - len(name) + 1)
         return TypeName(package, "msg", name)
 
 
@@ -309,3 +318,7 @@ def _leading_name(rest: str) -> tuple[str, str]:
     if not words:
         return "", rest[equals:]
     return words[0], rest[rest.find(words[1], len(words[0])) :]
+
+
+def _quoted(text: str) -> str:
+    return text if len(text) <= _QUOTED else text[: _QUOTED - 3] + "..."

@@ -10,7 +10,7 @@ from roslet.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Literal, TypeAlias, Union
+    from typing import Literal, TypeAlias
 
     Dialect: TypeAlias = Literal["ros1", "ros2"]
     Kind: TypeAlias = Literal["msg", "srv", "action"]

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 
-from roslet.errors import RecursiveType, UnknownType
+from roslet.errors import DefinitionError, RecursiveType, UnknownType
 from roslet.idl.parser import parse
 from roslet.idl.records import Action, Field, Message, Service, TypeName
 from roslet.idl.sources import bundled, environment_sources, legal_names, load_source
-from roslet.idl.spelling import KINDS, parse_type_name
+from roslet.idl.spelling import KINDS, is_word, parse_type_name
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -59,11 +59,14 @@ class Registry:
         Files are parsed when they are asked for. Raises DefinitionError where there is no definition.
         """
         source = load_source(os.fspath(path), self.dialect)
+        names = sorted(self._names_of(source, None, None))
+        if not names:
+            raise DefinitionError("no .msg, .srv or .action file in the packages here", os.fspath(path))
         self._loaded.insert(0, source)
         self._records.clear()
         self._texts.clear()
         self._checked.clear()
-        return sorted(self._names_of(source, None, None))
+        return names
 
     def message(self, name: TypeName | str) -> Message:
         """The message, given or derived, whose nested types all exist.
@@ -126,8 +129,7 @@ class Registry:
                 nested = waiting.pop()
                 if nested not in seen:
                     seen.add(nested)
-                    message = self._records[nested]
-                    assert isinstance(message, Message)
+                    message = self.message(nested)
                     found.append(message)
                     waiting += _nested_names(message)
         return found
@@ -168,6 +170,8 @@ class Registry:
         found = self._records.get(name)
         if found is not None:
             return found
+        if not is_word(name.package.replace("-", "_")) or not is_word(name.name):
+            return None  # such a name must not become a path
         owners = _owners(name, self.dialect)
         for source in self._sources():
             for owner in owners:

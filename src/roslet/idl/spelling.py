@@ -51,15 +51,17 @@ INTEGER_RANGES: dict[str, tuple[int, int]] = {
     "uint64": (0, 0xFFFFFFFFFFFFFFFF),
 }
 
-_FIELD_RULE = "lower-case letters, digits and single underscores, beginning with a letter, not ending with an underscore"
+_FIELD_RULE = "lower-case letters, digits and single underscores, a letter first, no underscore last"
+_CONSTANT_RULE = "capitals, digits and single underscores, a letter first, no underscore last"
 
 
-def _is_word(name: str) -> bool:
+def is_word(name: str) -> bool:
+    """Letters, digits and underscores of ASCII, beginning with a letter."""
     return name.isascii() and name.isidentifier() and name[0] != "_"
 
 
 def _is_snake(name: str) -> bool:
-    return _is_word(name) and name == name.lower() and "__" not in name and name[-1] != "_"
+    return is_word(name) and name == name.lower() and "__" not in name and name[-1] != "_"
 
 
 def package_problem(name: str, dialect: Dialect) -> str:
@@ -67,7 +69,7 @@ def package_problem(name: str, dialect: Dialect) -> str:
     if dialect == "ros1":
         # Packages of ROS 1 may carry a dash, though no message in them can then be named from another
         # package.
-        if _is_word(name.replace("-", "_")):
+        if is_word(name.replace("-", "_")):
             return ""
         return "package names are made of letters, digits and underscores and begin with a letter"
     return "" if _is_snake(name) else "package names are made of " + _FIELD_RULE
@@ -76,7 +78,7 @@ def package_problem(name: str, dialect: Dialect) -> str:
 def interface_problem(name: str, dialect: Dialect) -> str:
     """Why this is no name for a message, service or action; empty if it is one."""
     if dialect == "ros1":
-        if _is_word(name):
+        if is_word(name):
             return ""
         return "type names are made of letters, digits and underscores and begin with a letter"
     if name.isascii() and name.isalnum() and "A" <= name[0] <= "Z":
@@ -87,7 +89,7 @@ def interface_problem(name: str, dialect: Dialect) -> str:
 def field_problem(name: str, dialect: Dialect) -> str:
     """Why this is no field name; empty if it is one."""
     if dialect == "ros1":
-        if _is_word(name):
+        if is_word(name):
             return ""
         return "field names are made of letters, digits and underscores and begin with a letter"
     return "" if _is_snake(name) else "field names are made of " + _FIELD_RULE
@@ -96,15 +98,12 @@ def field_problem(name: str, dialect: Dialect) -> str:
 def constant_problem(name: str, dialect: Dialect) -> str:
     """Why this is no constant name; empty if it is one."""
     if dialect == "ros1":
-        if _is_word(name):
+        if is_word(name):
             return ""
         return "constant names are made of letters, digits and underscores and begin with a letter"
-    if _is_word(name) and name == name.upper() and "__" not in name and name[-1] != "_":
+    if is_word(name) and name == name.upper() and "__" not in name and name[-1] != "_":
         return ""
-    return (
-        "constant names are made of capitals, digits and single underscores, beginning with a letter, "
-        "not ending with an underscore"
-    )
+    return "constant names are made of " + _CONSTANT_RULE
 
 
 def parse_type_name(text: str, kind: Kind = "msg") -> TypeName:
@@ -118,6 +117,6 @@ def parse_type_name(text: str, kind: Kind = "msg") -> TypeName:
         kind = KINDS[KINDS.index(parts[1])]
     elif len(parts) != 2:
         raise InvalidName(f"{text!r} is no type name: expected package/Name or package/msg/Name")
-    if not _is_word(parts[0].replace("-", "_")) or not _is_word(parts[-1]):
+    if not is_word(parts[0].replace("-", "_")) or not is_word(parts[-1]):
         raise InvalidName(f"{text!r} is no type name: packages and names are letters, digits and underscores")
     return TypeName(parts[0], kind, parts[-1])

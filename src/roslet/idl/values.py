@@ -89,10 +89,7 @@ def _integer(dialect: Dialect, type: FieldType, text: str) -> int:  # noqa: A002
         except ValueError:
             # ROS 1 reads decimals only; ROS 2 also 0x, 0o and 0b.
             if dialect == "ros2":
-                try:
-                    value = int(text, 0)
-                except ValueError:
-                    pass
+                value = _radix_integer(text)
     if value is None:
         raise ValueError(
             "{} is no {}".format(_shown(text), "decimal integer" if dialect == "ros1" else "integer")
@@ -101,6 +98,13 @@ def _integer(dialect: Dialect, type: FieldType, text: str) -> int:  # noqa: A002
     if not low <= value <= high:
         raise ValueError(f"{_shown(text)} does not fit {type.spelled}: {low} to {high}")
     return value
+
+
+def _radix_integer(text: str) -> int | None:
+    try:
+        return int(text, 0)
+    except ValueError:
+        return None
 
 
 def _float(spelled: str, text: str) -> float:
@@ -207,7 +211,7 @@ def _split_strings(text: str) -> list[str]:
             while at < end and text[at] == " ":
                 at += 1
             if at < end and text[at] != ",":
-                raise ValueError(f"element {len(texts)}: expected a comma after the closing quote")
+                raise ValueError(f"element {len(texts) - 1}: expected a comma after the closing quote")
         else:
             comma = text.find(",", at)
             stop = comma if comma >= 0 else end

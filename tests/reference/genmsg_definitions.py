@@ -1,0 +1,97 @@
+"""What genmsg and genpy, ROS 1's own tools, say of every definition. Runs under Debian's Python, knows nothing of roslet.
+
+    genmsg_definitions.py files SHARE...     every .msg and .srv in the packages of these directories, read by genmsg
+    genmsg_definitions.py classes            every class that genpy generated into an installed package
+
+Prints JSON: {"pkg/msg/Name": {"md5": ..., "text": ...}, "pkg/srv/Name": {"md5": ..., "request": ..., "response": ...}}
+with `text`, `request` and `response` the full texts; a definition that genmsg refuses has only "error".
+"""
+
+import importlib
+import json
+import os
+import pkgutil
+import sys
+
+import genmsg
+import genmsg.gentools
+import genmsg.msg_loader
+
+
+def from_files(shares):
+    paths = {}
+    for share in shares:
+        for package in sorted(os.listdir(share)):
+            directory = os.path.join(share, package, "msg")
+            if os.path.isdir(directory):
+                paths.setdefault(package, []).append(directory)
+    found = {}
+    for share in shares:
+        for package in sorted(os.listdir(share)):
+            for kind in ("msg", "srv"):
+                directory = os.path.join(share, package, kind)
+                files = sorted(os.listdir(directory)) if os.path.isdir(directory) else []
+                for file in files:
+                    if file.endswith("." + kind):
+                        key = "%s/%s/%s" % (package, kind, file[: -len(kind) - 1])
+                        if key not in found:
+                            found[key] = describe(os.path.join(directory, file), key, paths)
+    return found
+
+
+def describe(path, key, paths):
+    package, kind, name = key.split("/")
+    context = genmsg.msg_loader.MsgContext.create_default()
+    full = package + "/" + name
+    try:
+        if kind == "msg":
+            spec = genmsg.msg_loader.load_msg_from_file(context, path, full)
+            genmsg.msg_loader.load_depends(context, spec, paths)
+            text = genmsg.gentools.compute_full_text(context, spec)
+            return {"md5": genmsg.gentools.compute_md5(context, spec), "text": text}
+        spec = genmsg.msg_loader.load_srv_from_file(context, path, full)
+        genmsg.msg_loader.load_depends(context, spec, paths)
+        return {
+            "md5": genmsg.gentools.compute_md5(context, spec),
+            "request": genmsg.gentools.compute_full_text(context, spec.request),
+            "response": genmsg.gentools.compute_full_text(context, spec.response),
+        }
+    except Exception as error:  # whatever the reference raises is its verdict
+        return {"error": "%s: %s" % (type(error).__name__, error)}
+
+
+def from_classes():
+    found = {}
+    for root in sys.path:
+        if not os.path.isdir(root):
+            continue
+        for module in pkgutil.iter_modules([root]):
+            for kind in ("msg", "srv"):
+                if os.path.exists(os.path.join(root, module.name, kind, "__init__.py")):
+                    try:
+                        package = importlib.import_module("%s.%s" % (module.name, kind))
+                    except ImportError:
+                        continue
+                    found.update(describe_classes(module.name, kind, vars(package)))
+    return found
+
+
+def describe_classes(package, kind, names):
+    found = {}
+    for entry in names.values():
+        if not isinstance(entry, type) or "/" not in getattr(entry, "_type", ""):
+            continue
+        key = "%s/%s/%s" % (package, kind, entry._type.partition("/")[2])
+        if kind == "msg":
+            found[key] = {"md5": entry._md5sum, "text": entry._full_text}
+        elif hasattr(entry, "_request_class"):
+            found[key] = {
+                "md5": entry._md5sum,
+                "request": entry._request_class._full_text,
+                "response": entry._response_class._full_text,
+            }
+    return found
+
+
+if __name__ == "__main__":
+    json.dump(from_files(sys.argv[2:]) if sys.argv[1] == "files" else from_classes(), sys.stdout)
