@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from roslet.engine.ros1.links import PublisherLink
 from roslet.engine.ros1.udp import UdpSender
 from roslet.errors import MalformedMessage, NodeClosed, ProtocolError
+from roslet.io.memory import LARGE, keep_large_blocks
 from roslet.wire.message import BufferTooSmall
 
 if TYPE_CHECKING:
@@ -28,6 +29,10 @@ if TYPE_CHECKING:
 FIRST_BUFFER = 1024
 # With `keep_all`, how long publishing waits for one subscriber that takes nothing. Seconds.
 MAX_BLOCKING = 10.0
+# A large message overfills a socket whose reader is busy reading it. Seconds to wait for room, each time, before the
+# rest is queued for the loop: handing over costs more. A reader that takes nothing costs this once, as its queue is
+# filled without trying from then on.
+PATIENCE = 0.001
 # sendmsg takes at most this many buffers (IOV_MAX).
 MAX_GATHER = 1024
 
@@ -161,6 +166,7 @@ class Publisher:
 
     def _send_parts(self, links: tuple[PublisherLink, ...], parts: list[Any], end: int) -> None:
         """Send the scratch buffer with large arrays between, without copying those."""
+        keep_large_blocks()
         buffers: list[Any] = []
         at = 0
         total = end
@@ -191,10 +197,19 @@ class Publisher:
                 self._queue(link, frame)
 
     def _later(self, link: PublisherLink, frame: memoryview, sent: int) -> None:
-        """The socket took `sent` bytes of the frame: keep, or wait for, the rest."""
+        """The socket took `sent` bytes of the frame: wait a moment for a reader that keeps up, then keep the rest."""
         if self._wait:
             self._send_rest(link, [frame], sent, len(frame))
             return
+        channel: Any = link.channel
+        while sent and wait_writable(channel.sock, PATIENCE):
+            sent += channel.try_send(frame[sent:])
+            if sent == len(frame):
+                link.messages += 1
+                link.bytes += len(frame) - 4
+                return
+            if channel.closed:
+                break
         if sent:
             link.queue.push_rest(bytes(frame[sent:]))
         else:
@@ -365,6 +380,8 @@ class Subscription:
                     self._reject(error, link)
                     return
             self.messages += 1
+            if end > LARGE:
+                keep_large_blocks()
             callback = self._callback
             if callback is None:
                 self._keep(message)
