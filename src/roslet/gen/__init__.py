@@ -1,0 +1,1 @@
+"""Backends that spell what `layout` decided. Imports `idl` and `layout`; the code it makes imports `wire` only."""

@@ -1,0 +1,257 @@
+"""The base of every generated message class, and what generated code falls back on. Runs on MicroPython."""
+
+from roslet.errors import RosletError
+from roslet.wire import cdr, ros1
+from roslet.wire.arrays import TYPECODES
+from roslet.wire.cursor import SINGLE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, ClassVar
+
+    from typing_extensions import Self
+
+    Bytes = bytes | bytearray | memoryview
+
+GATHER_MINIMUM = 16384
+"""Bytes from which a payload is handed out for a gathering send instead of being copied."""
+
+_SCRATCH = 8192
+_MAX_KEPT = 1 << 20
+_MAX_SCRATCHES = 8
+_scratches: "list[memoryview]" = []
+
+
+class BufferTooSmall(RosletError):
+    """The buffer given to `serialize_into` ends too early. `size` is the message's serialised size in bytes."""
+
+    def __init__(self, size: int) -> None:
+        super().__init__("the message needs %d bytes" % size)
+        self.size = size
+
+
+class Message:
+    """A message of one type of one dialect.
+
+    A generated class has its fields as slots, the definition's constants as class attributes, and the attributes below.
+    Arrays of a received message may be views on the buffer it was read from (`_views`): valid as long as they are held,
+    but only as long as the owner of the buffer does not reuse it; `copy()` takes the message out of it.
+
+    Field names that are Python keywords, or names of the methods here, have a trailing underscore.
+    """
+
+    __slots__ = ()
+
+    _type: "ClassVar[str]" = ""
+    """The type's name as the dialect spells it."""
+    _encoding: "ClassVar[str]" = "ros1"
+    """"ros1" or "cdr"."""
+    _spec: "ClassVar[Any]" = ()
+    """The field table, see `roslet.wire.cursor`."""
+    _fields_and_types: "ClassVar[tuple[tuple[str, str], ...]]" = ()
+    """Every field's name (as the definition has it) and its type as the definition spells it."""
+    _views: "ClassVar[bool]" = False
+    _fixed_size: "ClassVar[int | None]" = None
+    """Bytes of every serialised message of the type, if they are all of one size; with CDR's encapsulation header."""
+    _minimum_size: "ClassVar[int]" = 0
+    _maximum_size: "ClassVar[int | None]" = None
+    _md5sum: "ClassVar[str]" = ""
+    _full_text: "ClassVar[str]" = ""
+    _has_header: "ClassVar[bool]" = False
+    _type_hash: "ClassVar[str]" = ""
+
+    def serialize_into(
+        self, buffer: "bytearray | memoryview", offset: int = 0, parts: "list[tuple[int, Any]] | None" = None
+    ) -> int:
+        """Write the message (in CDR: the encapsulation header and the body) from `offset`; the offset after it.
+
+        `parts`, if given, is an empty list: payloads of at least GATHER_MINIMUM bytes are then appended to it as
+        (offset in `buffer` before which the payload belongs, bytes-like) instead of being copied, and the offset
+        returned is that of the rest. Raises InvalidMessage for a value that its field cannot hold, BufferTooSmall if
+        the buffer is; what the buffer then holds from `offset` on is unspecified.
+        """
+        raise NotImplementedError
+
+    @classmethod
+    def deserialize_from(cls, buffer: "Any", start: int, end: int) -> "Self":
+        """The message that takes all of buffer[start:end]; `buffer` is a memoryview of bytes.
+
+        Raises MalformedMessage (offset from `start`, value path), having allocated no more than the input justifies.
+        """
+        raise NotImplementedError
+
+    def serialized_size(self) -> int:
+        """The number of bytes that `serialize` returns. Raises InvalidMessage."""
+        size = self._fixed_size
+        if size is not None:
+            return size
+        return cdr.size(self) if self._encoding == "cdr" else ros1.size(self)
+
+    def serialize(self) -> bytes:
+        """The message's bytes. Raises InvalidMessage."""
+        # Taking a scratch buffer off the list is atomic: each thread has its own.
+        try:
+            scratch = _scratches.pop()
+        except IndexError:
+            scratch = memoryview(bytearray(_SCRATCH))
+        parts: "list[tuple[int, Any]]" = []
+        while True:
+            try:
+                end = self.serialize_into(scratch, 0, parts)
+                break
+            except BufferTooSmall as error:
+                scratch = memoryview(bytearray(error.size + _SCRATCH))
+        if parts:
+            pieces: "list[Any]" = []
+            done = 0
+            for offset, payload in parts:
+                pieces.append(scratch[done:offset])
+                pieces.append(payload)
+                done = offset
+            pieces.append(scratch[done:end])
+            data = b"".join(pieces)
+        else:
+            data = bytes(scratch[:end])
+        if len(scratch) <= _MAX_KEPT and len(_scratches) < _MAX_SCRATCHES:
+            _scratches.append(scratch)
+        return data
+
+    @classmethod
+    def deserialize(cls, buffer: "Any") -> "Self":
+        """The message that takes all of `buffer`, any bytes-like object. Raises MalformedMessage."""
+        kind = type(buffer)
+        if kind is bytes:
+            if cls._views:
+                return cls.deserialize_from(memoryview(buffer), 0, len(buffer))
+            return cls.deserialize_from(buffer, 0, len(buffer))
+        view = memoryview(buffer)
+        if kind is not bytearray and kind is not memoryview or getattr(view, "format", "B") != "B":
+            view = view.cast("B")
+        return cls.deserialize_from(view, 0, len(view))
+
+    def copy(self) -> "Self":
+        """A deep copy, whose arrays and bytes have memory of their own."""
+        made = object.__new__(type(self))
+        for attribute, base, kind, _size, _bound in self._spec:
+            setattr(made, attribute, _copied(getattr(self, attribute), base, kind))
+        return made
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Message) or other._spec is not self._spec:
+            return NotImplemented
+        for field in self._spec:
+            attribute = field[0]
+            if not same(getattr(self, attribute), getattr(other, attribute)):
+                return False
+        return True
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        inside = ", ".join(["%s=%r" % (field[0], getattr(self, field[0], None)) for field in self._spec])
+        return "%s(%s)" % (type(self).__name__, inside)
+
+
+def same(one: "Any", other: "Any") -> bool:
+    """Whether two field values are equal: arrays by their elements, whatever holds them."""
+    if one is other:
+        return True
+    if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
+        if len(one) != len(other):
+            return False
+        return all([same(left, right) for left, right in zip(one, other)])
+    if isinstance(one, (str, int, float, bytes, Message)):
+        equal = one == other
+        if equal is True or equal is False:
+            return equal
+    if hasattr(one, "__len__") and hasattr(other, "__len__"):
+        if len(one) != len(other):
+            return False
+        if hasattr(one, "tobytes") and hasattr(other, "tobytes") and type(one) is type(other):
+            return _same_arrays(one, other)
+        if isinstance(one, str) or isinstance(other, str):
+            return False
+        return all([left == right for left, right in zip(one, other)])
+    return bool(one == other)
+
+
+def _same_arrays(one: "Any", other: "Any") -> bool:
+    equal = one == other
+    if equal is True or equal is False:
+        return equal
+    return bool(equal.all())
+
+
+def _copied(value: "Any", base: "Any", kind: int) -> "Any":
+    if kind == SINGLE:
+        if not isinstance(base, str):
+            return value.copy()
+        if base == "time" or base == "duration":
+            made = object.__new__(type(value))
+            made.secs = value.secs
+            made.nsecs = value.nsecs
+            return made
+        return value
+    if isinstance(base, str) and base in TYPECODES:
+        if isinstance(value, (list, tuple)):
+            return list(value)
+        if hasattr(value, "copy"):
+            return value.copy()
+        if isinstance(value, memoryview):
+            if getattr(value, "format", "B") == "B":
+                return bytes(value)
+            return memoryview(bytes(value)).cast(value.format)  # type: ignore[call-overload]
+        return value[:]
+    return [_copied(element, base, SINGLE) for element in value]
+
+
+def rescue_write(
+    message: "Any", buffer: "Any", offset: int, parts: "list[tuple[int, Any]] | None", error: Exception
+) -> int:
+    """What generated code does when its fast path raised: write by the field table, which accepts everything that is
+    valid, or raise the exact error. Same contract as `Message.serialize_into`."""
+    if isinstance(error, RosletError):
+        raise error
+    if parts is not None:
+        del parts[:]
+    codec = cdr if message._encoding == "cdr" else ros1
+    size = codec.size(message)
+    if offset + size > len(buffer):
+        raise BufferTooSmall(size)
+    buffer[offset : offset + size] = codec.write(message)
+    return offset + size
+
+
+def rescue_read(kind: "Any", buffer: "Any", start: int, end: int) -> "Any":
+    """What generated code does when its fast path raised: read by the field table, which knows every representation, or
+    raise the exact error. Same contract as `Message.deserialize_from`."""
+    if end > len(buffer):
+        end = len(buffer)
+    codec = cdr if kind._encoding == "cdr" else ros1
+    return codec.read(kind, buffer, start, end)
+
+
+class Service:
+    """A service type: `Request` and `Response` are its message classes."""
+
+    _type: "ClassVar[str]" = ""
+    _md5sum: "ClassVar[str]" = ""
+    _type_hash: "ClassVar[str]" = ""
+    Request: "ClassVar[type[Message]]" = Message
+    Response: "ClassVar[type[Message]]" = Message
+
+
+class Action:
+    """An action type: `Goal`, `Result`, `Feedback`, and what the dialect derives of them (ROS 2: the services `SendGoal`
+    and `GetResult` and the message `FeedbackMessage`; ROS 1: the messages `ActionGoal`, `ActionResult`,
+    `ActionFeedback` and `Action`)."""
+
+    _type: "ClassVar[str]" = ""
+    _md5sum: "ClassVar[str]" = ""
+    _type_hash: "ClassVar[str]" = ""
+    Goal: "ClassVar[type[Message]]" = Message
+    Result: "ClassVar[type[Message]]" = Message
+    Feedback: "ClassVar[type[Message]]" = Message
