@@ -115,8 +115,8 @@ class Publisher:
             parts: list[Any] | None = None if self._latch or entry.senders else []
             try:
                 end = message.serialize_into(self._buffer, 4, parts)
-            except BufferTooSmall:
-                self._grow(4 + message.serialized_size())
+            except BufferTooSmall as error:
+                self._grow(4 + error.size)
                 if parts:
                     parts = []
                 end = message.serialize_into(self._buffer, 4, parts)

@@ -211,7 +211,8 @@ class Subscription:
     def _later(self, uri: str, reason: str, now: float) -> None:
         pause = self._retry.get(uri, (0.0, RETRY_FIRST))[1]
         self._retry[uri] = (now + pause, min(2 * pause, RETRY_LAST))
-        if pause == RETRY_FIRST:
+        if pause == 4 * RETRY_FIRST:
+            # A publisher that has just closed is told by the master in a moment; a third failure is worth a line.
             self.engine.note("%s: no connection to %s: %s" % (self.topic, uri, reason))
 
     def deadline(self) -> "float | None":
