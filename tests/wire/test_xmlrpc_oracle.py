@@ -111,7 +111,8 @@ def test_a_declared_encoding_of_the_standard_library_is_read() -> None:
 
 
 FRAGMENTS = st.sampled_from(
-    b"<value> </value> <int> </int> <array> <data> </data> </array> <struct> <member> <name> </name>"
+    b"<value> </value> <int> </int> <array> <data> </data> </array> <struct> <member> <name>"
+    b" </name>"
     b" </member> </struct> <params> <param> </param> </params> <methodCall> <methodName> m </methodName>"
     b" </methodCall> 1 & &lt; \xff <methodResponse> </methodResponse> <fault> </fault> <value/> <nil/>".split()
 )
