@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-import peers
-from interop.ros1 import Master, Peer, Tools
+pytest.register_assert_rewrite("interop.exchange", "interop.ros1")
+
+import peers  # noqa: E402
+from interop.ros1 import Master, Peer, Tools  # noqa: E402
 
 if TYPE_CHECKING:
     import roslet

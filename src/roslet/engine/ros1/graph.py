@@ -173,7 +173,8 @@ class Subscription:
         self._asking[uri] = 1
         protocols: list[object] = [["TCPROS"]]
         if self.transport == "udp":
-            protocols = [self.engine.udp_request(self)]
+            # Datagrams are preferred, not demanded: rospy speaks TCPROS only.
+            protocols.insert(0, self.engine.udp_request(self))
 
         def answered(value: object, error: "Exception | None", when: float) -> None:
             self._asking.pop(uri, None)

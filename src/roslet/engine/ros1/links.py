@@ -179,6 +179,7 @@ class SubscriberLink(FrameLink):
 
     user = False
     replies = False  # after the handshake a subscriber sends nothing
+    transport = "TCPROS"
 
     def __init__(
         self, engine: "Engine", subscription: "Subscription", uri: str, address: "tuple[str, int]", now: float

@@ -89,7 +89,7 @@ class Slave:
                             incoming.connection_id,
                             uri,
                             "i",
-                            "UDPROS" if subscription.transport == "udp" else "TCPROS",
+                            incoming.transport,
                             topic,
                             incoming.state == OPEN,
                             _peer(incoming),

@@ -60,6 +60,8 @@ class UdpReceiver:
     """Our subscription's datagrams from one publisher. Blocks may come in any order within a message; a message of
     which a block is missing when the next begins is dropped: `udp-incomplete`."""
 
+    transport = "UDPROS"
+
     def __init__(
         self, engine: "Engine", subscription: "Subscription", uri: str, connection_id: int, host: str
     ) -> None:
