@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import weakref
-from typing import TYPE_CHECKING
 
 from roslet.errors import Unsupported
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from roslet.io.select import Reactor
 
@@ -45,10 +45,7 @@ class _Bridge:
 
 def attach(reactor: Reactor, loop: asyncio.AbstractEventLoop) -> None:
     """Serve callbacks from `loop` as long as it runs. Raises Unsupported where the system's poller has no descriptor."""
-    if loop in # Seconds to wait for another thread that has the loop at the moment.
-TURN = 0.1
-
-_attached:
+    if loop in _attached:
         return
     if reactor.fileno() < 0:
         raise Unsupported("asyncio needs epoll, which this system does not have; use spin() in a thread")
