@@ -4,7 +4,7 @@ PYTHON := .venv/bin/python
 .PHONY: demo test quick lint format types docs bench peers venv clean
 
 demo: venv ## the whole path in one terminal, about 20 seconds
-	$(PYTHON) -m roslet.cli.main demo
+	$(PYTHON) -m roslet demo
 
 test: ## lint, types, layers, every test on CPython and MicroPython, real peers
 	tools/test.sh

@@ -98,8 +98,9 @@ for package in sys.argv[1:]:
         for entry in vars(module).values():
             name = getattr(entry, "_type", "").partition("/")[2]
             if kind == "srv" and hasattr(entry, "_request_class"):
-                parts = (entry._request_class._full_text, entry._response_class._full_text)
-                texts[package + "/srv/" + name] = "\\n---\\n".join([part.partition("=" * 80)[0] for part in parts])
+                parts = [entry._request_class._full_text, entry._response_class._full_text]
+                own = [part.partition("=" * 80)[0] for part in parts]
+                texts[package + "/srv/" + name] = "\\n---\\n".join(own)
             elif kind == "msg" and hasattr(entry, "_full_text"):
                 texts[package + "/msg/" + name] = entry._full_text.partition("=" * 80)[0]
 print(json.dumps(texts))
@@ -152,7 +153,9 @@ def bare(interface: Interface) -> str:
     for part in parts:
         entries: list[Field | Constant] = [*part.fields, *part.constants]
         entries.sort(key=lambda entry: entry.line)
-        texts.append("".join([_entry(entry, lines[entry.line - 1], interface.dialect) + "\n" for entry in entries]))
+        texts.append(
+            "".join([_entry(entry, lines[entry.line - 1], interface.dialect) + "\n" for entry in entries])
+        )
     return "---\n".join(texts)
 
 
@@ -214,7 +217,9 @@ def main() -> int:
     parser.add_argument("--ros1", nargs="+", type=pathlib.Path, default=[], metavar="DIR")
     parser.add_argument("--ros1-python", metavar="PYTHON")
     parser.add_argument("--ros2", nargs="+", type=pathlib.Path, default=[], metavar="DIR")
-    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if something would change")
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing; exit 1 if something would change"
+    )
     options = parser.parse_args()
     ros1 = read_directories("ros1", options.ros1)
     if options.ros1_python:

@@ -39,7 +39,7 @@ def start_master(environment: dict[str, str]) -> subprocess.Popen[bytes]:
     port = free_port()
     environment["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
     process = subprocess.Popen(
-        [sys.executable, "-m", "roslet.cli.main", "master", "--port", str(port)],
+        [sys.executable, "-m", "roslet", "master", "--port", str(port)],
         env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
     )  # fmt: skip
     end = time.monotonic() + 10

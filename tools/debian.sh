@@ -13,6 +13,9 @@ python3-trajectory-msgs python3-visualization-msgs python3-diagnostic-msgs pytho
 python3-rosgraph-msgs python3-roscpp-msg python3-tf2-msgs python3-map-msgs python3-move-base-msgs python3-pcl-msgs
 python3-topic-tools python3-tf python3-actionlib python3-dynamic-reconfigure python3-nodelet python3-bond
 python3-polled-camera python3-numpy python3-yaml
+ros-std-msgs ros-std-srvs ros-geometry-msgs ros-sensor-msgs ros-nav-msgs ros-shape-msgs ros-stereo-msgs
+ros-trajectory-msgs ros-visualization-msgs ros-diagnostic-msgs ros-actionlib-msgs ros-rosgraph-msgs ros-tf2-msgs
+ros-map-msgs ros-move-base-msgs ros-pcl-msgs ros-topic-tools-srvs
 gcc g++ pkg-config iproute2 procps
 "
 

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Makes the real peers that the tests judge against, in a cache outside the tree:
 #   kilted/ jazzy/ cyclone/  virtual environments with the ROS 2 and DDS wheels
+#   ros1-definitions/        definition files of Debian packages that are too heavy to install for them
 #   ros1/                    our message packages through gencpp and genpy, and the roscpp peer compiled against them
 # Each part carries a stamp of what it was made from, so a second run is instant. What cannot be made here
 # (no wheel for this Python, no roscpp) is said loudly and left out; the tests decide whether that is a failure.
@@ -31,6 +32,18 @@ wheels() { # NAME REQUIREMENT...
 wheels kilted ros-rclpy==9.1.2 ros-rmw-fastrtps-cpp==9.3.3 ros-common-interfaces==5.5.1
 wheels jazzy ros-jazzy-rclpy==7.1.6 ros-jazzy-rmw-fastrtps-cpp==8.4.3 ros-jazzy-common-interfaces==5.3.6
 wheels cyclone cyclonedds==11.0.1
+
+want=$(sha256sum <tools/ros1_definitions.sh | cut -d' ' -f1)
+if [ "$(cat "$cache/ros1-definitions/roslet-stamp" 2>/dev/null || true)" != "$want" ]; then
+    echo "peers.sh: making ros1-definitions"
+    rm -rf "$cache/ros1-definitions"
+    if tools/ros1_definitions.sh "$cache/ros1-definitions"; then
+        echo "$want" >"$cache/ros1-definitions/roslet-stamp"
+    else
+        echo "peers.sh: ros1-definitions CANNOT BE MADE HERE" >&2
+        rm -rf "$cache/ros1-definitions"
+    fi
+fi
 
 want=$(cat tools/peers.sh tools/ros1_peers.sh $(find tests/interop/peers -type f -not -name '*.py' | LC_ALL=C sort) | sha256sum | cut -d' ' -f1)
 want="$want $(dpkg-query -W -f='${Version}' libroscpp-dev 2>/dev/null || echo none)"

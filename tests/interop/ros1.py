@@ -62,7 +62,7 @@ class Master:
             command = [str(peers.DEBIAN_PYTHON), program, "--core", "-p", str(self.port)]
         else:
             environment["PYTHONPATH"] = str(peers.ROOT / "src")
-            command = [sys.executable, "-c", f"from roslet.master.server import run; run(port={self.port})"]
+            command = [sys.executable, "-m", "roslet", "master", "--port", str(self.port)]
         self._log = open(self.folder / f"master-{self.kind}.log", "ab")  # noqa: SIM115 - as long as the process
         self.process = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=self._log, stderr=self._log, env=environment

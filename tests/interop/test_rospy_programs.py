@@ -25,7 +25,7 @@ def run(program: str, under: str, master: Master, *arguments: str) -> Program:
         return Program([peers.DEBIAN_PYTHON, path, *arguments], environment)
     # No generated package is on the path here: the definitions are found through ROS_PACKAGE_PATH.
     environment["PYTHONPATH"] = str(peers.ROOT / "src")
-    return Program([sys.executable, "-m", "roslet.cli.main", "run", path, *arguments], environment)
+    return Program([sys.executable, "-m", "roslet", "run", path, *arguments], environment)
 
 
 @pytest.mark.parametrize(("talks", "listens"), PAIRS)
