@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import asyncio
 import weakref
 
 from roslet.errors import Unsupported
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    import asyncio
+
     from roslet.io.select import Reactor
 
 # Seconds to wait for another thread that has the loop at the moment.
@@ -20,27 +21,28 @@ _attached: weakref.WeakKeyDictionary[asyncio.AbstractEventLoop, _Bridge] = weakr
 class _Bridge:
     def __init__(self, reactor: Reactor, loop: asyncio.AbstractEventLoop) -> None:
         self._reactor = reactor
-        self._loop = loop
+        # The dictionary's key must not be kept alive by its value.
+        self._loop = weakref.ref(loop)
         self._handle: asyncio.TimerHandle | None = None
         loop.add_reader(reactor.fileno(), self._turn)
-        self._turn()
+        loop.call_soon(self._turn)
 
     def _turn(self) -> None:
-        reactor = self._reactor
-        if reactor.in_loop:
+        reactor, loop = self._reactor, self._loop()
+        if reactor.in_loop or loop is None:
             return
         try:
             turned: list[bool] = []
             reactor.call_soon(lambda: turned.append(True), user=True)
             reactor.run_until(lambda: turned, TURN)
         except Exception as error:
-            self._loop.call_exception_handler({"message": "a roslet callback raised", "exception": error})
+            loop.call_exception_handler({"message": "a roslet callback raised", "exception": error})
         when = reactor.user_deadline()
         if self._handle is not None:
             self._handle.cancel()
             self._handle = None
         if when is not None:
-            self._handle = self._loop.call_later(max(0.0, when - reactor.now()), self._turn)
+            self._handle = loop.call_later(max(0.0, when - reactor.now()), self._turn)
 
 
 def attach(reactor: Reactor, loop: asyncio.AbstractEventLoop) -> None:

@@ -8,15 +8,16 @@ from __future__ import annotations
 import socket
 import time
 from struct import unpack
-from typing import TYPE_CHECKING, Any
 
 from roslet.engine.ros1.rpc import CallFailed, RpcClient, unpack_reply
 from roslet.errors import CallTimeout, HandshakeRefused, ProtocolError, Unreachable
 from roslet.names import parse_host_port
 from roslet.wire.tcpros import MAX_HEADER, emit_header, parse_header
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import TracebackType
+    from typing import Any
 
 # Bytes taken from a socket in one go.
 ROOM = 64 << 10

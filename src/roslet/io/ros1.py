@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 import socket
-from typing import TYPE_CHECKING, Any
 
 from roslet.engine.ros1.links import IncomingLink, PublisherLink
 from roslet.engine.ros1.rpc import RpcClient, RpcServer
 from roslet.io.select import EXHAUSTED, READ, Timer, listen, tune
 from roslet.io.streams import Stream, connect, lose_machine
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from roslet.engine.ros1.engine import Engine
     from roslet.io.select import Reactor
 
@@ -54,7 +56,7 @@ class Ros1Shell:
                     self.engine.count(f"{kind}: no-descriptors")
                     fd = listener.fileno()
                     self.reactor.modify(fd, 0)
-                    self.reactor.call_at(self.reactor.now() + PAUSE, lambda: self._resume(fd))
+                    self.reactor.call_at(self.reactor.now() + PAUSE, lambda fd=fd: self._resume(fd))
                 return
             if self._accepted[kind] >= MAX_CONNECTIONS:
                 self.engine.count(f"{kind}: too-many-connections")

@@ -14,13 +14,13 @@ import select
 import socket
 import sys
 import threading
-import traceback
 from collections import deque
 from time import monotonic, sleep
-from typing import TYPE_CHECKING, Any
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import Any
 
     Handler = Callable[[int], None]
 
@@ -46,6 +46,11 @@ def _poller() -> Any:
 
 def _processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _print(error: BaseException) -> None:
+    """To standard error, with where it came from."""
+    sys.excepthook(type(error), error, error.__traceback__)
 
 
 class Timer:
@@ -200,8 +205,6 @@ class Reactor:
         """
         if predicate():
             return True
-        if timeout is not None and timeout <= 0 and not user:
-            return False
         end = None if timeout is None else monotonic() + timeout
         if self._owner == threading.get_ident():
             return self._loop(predicate, end, False)
@@ -238,13 +241,13 @@ class Reactor:
             with self._changed:
                 self._changed.notify_all()
 
-    def run_turns(self, count: int, timeout: float) -> None:
-        """Serve for `count` turns of the loop, the first of which may wait `timeout` seconds for something to do."""
-        left = [count]
+    def run_turn(self, timeout: float) -> None:
+        """Serve one turn of the loop, which waits at most `timeout` seconds for something to do."""
+        looks = []
 
         def turned() -> bool:
-            left[0] -= 1
-            return left[0] < 0
+            looks.append(True)
+            return len(looks) > 2  # looked at before the turn is taken, before the turn, and after it
 
         self.run_until(turned, timeout)
 
@@ -254,15 +257,14 @@ class Reactor:
 
     def _loop(self, predicate: Callable[[], object], end: float | None, user: bool) -> bool:
         turn = self._run_turn
-        while True:
+        while not predicate():  # first of all: it may have come true while another thread had the loop
+            if end is not None and monotonic() >= end:
+                return False
             turn(end, user)
             if self._error is not None:
                 error, self._error = self._error, None
                 raise error
-            if predicate():
-                return True
-            if end is not None and monotonic() >= end:
-                return False
+        return True
 
     def _run_turn(self, end: float | None, user: bool) -> None:
         """One sleep and what follows it."""
@@ -359,7 +361,7 @@ class Reactor:
         if self._error is None:
             self._error = error
         else:
-            traceback.print_exception(error, file=sys.stderr)
+            _print(error)
 
     # -- the background thread
 
@@ -383,7 +385,7 @@ class Reactor:
                     self._run_turn(None, False)
                     if self._error is not None:
                         error, self._error = self._error, None
-                        traceback.print_exception(error, file=sys.stderr)
+                        _print(error)
             finally:
                 self._lent = True
                 self._give_up_turn()

@@ -5,13 +5,14 @@ from __future__ import annotations
 import errno
 import socket
 import threading
-from typing import TYPE_CHECKING, Any
 
 from roslet.errors import ProtocolError
 from roslet.io.select import GONE, READ, WRITE, Timer, tune
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import Any
 
     from roslet.io.select import Reactor
 

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
-
 from roslet.errors import CallTimeout
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
+    from typing import Any, Generic, TypeVar
 
     from roslet.io.select import Reactor
 
-T = TypeVar("T")
+    T = TypeVar("T")
+else:
+    # Importing typing costs more than the rest of this room: at run time `Generic[T]` is just a base without anything.
+    T = None
+
+    class Generic:
+        def __class_getitem__(cls, item: object) -> type:
+            return cls
 
 
 class Future(Generic[T]):

@@ -8,7 +8,6 @@ import sys
 import threading
 import time
 import weakref
-from typing import TYPE_CHECKING, Any
 
 from roslet.engine.ros1.engine import Engine
 from roslet.errors import (
@@ -31,8 +30,10 @@ from roslet.node.topics import Publisher, Subscription
 from roslet.node.values import parse_value
 from roslet.wire.tcpros import MAX_FRAME
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from typing import Any
 
     from roslet.engine.ros1 import graph
     from roslet.wire.time import Time
@@ -167,7 +168,7 @@ class Node:
 
     def _pair(self, publisher: Publisher, subscription: Subscription) -> None:
         if publisher.topic == subscription.topic and subscription._publisher is None:
-            if subscription.type is publisher.type:
+            if subscription.type in (None, publisher.type):
                 subscription._publisher = publisher
                 publisher._attach(subscription)
             else:
@@ -378,7 +379,7 @@ class Node:
             self.reactor.call_soon(lambda: turned.append(True), user=True)
             self.reactor.run_until(lambda: turned, 1.0)
         else:
-            self.reactor.run_turns(1, timeout)
+            self.reactor.run_turn(timeout)
 
     def spin_until(self, predicate: Callable[[], object], timeout: float | None = None) -> bool:
         """Serve callbacks until `predicate()` is true; false after `timeout` seconds or when the node shuts down."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 from roslet.errors import CallTimeout, MalformedMessage, NodeClosed, RosletError, ServiceFailed
 from roslet.node.future import Future
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import Any
 
     from roslet.engine.ros1.graph import ServiceOffer
     from roslet.engine.ros1.links import ServiceClientLink

@@ -8,7 +8,6 @@ import threading
 from collections import deque
 from struct import pack_into
 from time import monotonic
-from typing import TYPE_CHECKING, Any
 
 from roslet.engine.ros1.links import PublisherLink
 from roslet.engine.ros1.udp import UdpSender
@@ -16,8 +15,10 @@ from roslet.errors import MalformedMessage, NodeClosed, ProtocolError
 from roslet.io.memory import LARGE, keep_large_blocks
 from roslet.wire.message import BufferTooSmall
 
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable
+    from typing import Any
 
     from roslet.engine.ros1.graph import Publication
     from roslet.engine.ros1.graph import Subscription as Entry
@@ -293,14 +294,20 @@ class Publisher:
 
     def _deliver_locally(self, message: Message) -> None:
         for subscription in self._local:
-            subscription._receive_local(message.copy())
+            subscription._receive_local(self._for_local(subscription, message))
         if self._latch:
             self._latched_local = message.copy()
 
     def _attach(self, subscription: Subscription) -> None:
         self._local = (*self._local, subscription)
         if self._latched_local is not None:
-            subscription._receive_local(self._latched_local.copy())
+            subscription._receive_local(self._for_local(subscription, self._latched_local))
+
+    def _for_local(self, subscription: Subscription, message: Message) -> Any:
+        """A message of its own for one of this node's subscriptions."""
+        if subscription.type is None:
+            return RawMessage(message.serialize(), self.type._type, self.type._md5sum, self.type._full_text)
+        return message.copy()
 
     def _detach(self, subscription: Subscription) -> None:
         self._local = tuple(other for other in self._local if other is not subscription)
@@ -502,7 +509,7 @@ class Subscription:
             waiter: asyncio.Future[None] = loop.create_future()
 
             def wake(waiter: asyncio.Future[None] = waiter) -> None:
-                loop.call_soon_threadsafe(lambda: waiter.done() or waiter.set_result(None))
+                loop.call_soon_threadsafe(lambda: None if waiter.done() else waiter.set_result(None))
 
             self._waiters.append(wake)
             if not self._queue and self._entry is not None:

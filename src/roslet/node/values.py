@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import json
-from typing import Any
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 _WORDS = {
     "true": True,
@@ -32,6 +33,8 @@ def parse_value(text: str) -> Any:
 
 
 def _parse_scalar(text: str) -> Any:
+    import json
+
     stripped = text.strip()
     if stripped.lower() in _WORDS:
         return _WORDS[stripped.lower()]
