@@ -111,10 +111,9 @@ def test_a_declared_encoding_of_the_standard_library_is_read() -> None:
 
 
 FRAGMENTS = st.sampled_from(
-    b"<value> </value> <int> </int> <array> <data> </data> </array> <struct> <member> <name>"
-    b" </name>"
-    b" </member> </struct> <params> <param> </param> </params> <methodCall> <methodName> m </methodName>"
-    b" </methodCall> 1 & &lt; \xff <methodResponse> </methodResponse> <fault> </fault> <value/> <nil/>".split()
+    b"<methodCall> <methodName> m </methodName> </methodCall> <methodResponse> </methodResponse> <fault>"
+    b" </fault> <params> <param> </param> </params> <value> </value> <int> </int> <array> <data> </data>"
+    b" </array> <struct> <member> <name> </name> </member> </struct> <value/> <nil/> 1 & &lt; \xff".split()
 )
 
 
