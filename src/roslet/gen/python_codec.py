@@ -427,12 +427,8 @@ class Deserializer(_Codec):
         yield "message = _new(cls)"
         yield from self.create(self.layout, "message")
         yield from self.sequence_of(operations, self.holders, header)
-        if self.cdr:
-            yield "if not 0 <= end - %s <= 3:" % (
-                "(%s)" % self.position() if self.constant else self.position()
-            )
-        else:
-            yield "if %s != end:" % self.position()
+        # What follows a CDR body is not looked at, see `roslet.wire.cdr`.
+        yield "if %s %s end:" % (self.position(), ">" if self.cdr else "!=")
         yield ["raise ValueError"]
         yield "return message"
 

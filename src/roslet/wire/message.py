@@ -74,7 +74,8 @@ class Message:
 
     @classmethod
     def deserialize_from(cls, buffer: "Any", start: int, end: int) -> "Self":
-        """The message that takes all of buffer[start:end]; `buffer` is a memoryview of bytes.
+        """The message that takes all of buffer[start:end]; `buffer` is a memoryview of bytes. In CDR bytes after the
+        body are ignored.
 
         Raises MalformedMessage (offset from `start`, value path), having allocated no more than the input justifies.
         """
@@ -163,7 +164,7 @@ def same(one: "Any", other: "Any") -> bool:
         if len(one) != len(other):
             return False
         return all([same(left, right) for left, right in zip(one, other)])
-    if isinstance(one, (str, int, float, bytes, Message)):
+    if isinstance(one, (str, int, float, Message)) or type(one) is type(other) is bytes:
         equal = one == other
         if equal is True or equal is False:
             return equal
