@@ -6,13 +6,13 @@ import threading
 from typing import Any
 
 import pytest
-from roslet.gen.runtime import message_class
 
 import roslet
 from interop.cases import Case
 from interop.peers import samples
 from interop.ros1 import Peer, wait_until
 from roslet import Node
+from roslet.gen.runtime import message_class
 
 
 def make(name: str) -> Any:
@@ -69,6 +69,53 @@ def send(node: Node, peer: Peer, case: Case, topic: str) -> None:
             publisher.publish(message(case.type, i, case.size))
         lines = peer.wait_for(f"got {topic} ", case.count)
     assert lines == [f"got {topic} {i} ok" for i in range(case.count)]
+    peer.ask(f"unsubscribe {topic}", f"unsubscribed {topic}")
+
+
+def raw_to_us(node: Node, peer: Peer, topic: str) -> None:
+    """A subscription of any type gets the bytes, and from the publisher's header what they are."""
+    inbox: list[Any] = []
+    peer.ask(f"advertise peer_msgs/Crowd {topic} 0", f"advertised {topic}")
+    subscription = node.subscribe(topic, "*", inbox.append)
+    wait_until(lambda: peer.subscribers(topic) == 1, "our subscription reaches the peer")
+    peer.say(f"publish {topic} 0 3")
+    wait_until(lambda: inbox, "the message arrives")
+    crowd = message_class("ros1", "peer_msgs/Crowd")
+    assert inbox[0].type == "peer_msgs/Crowd"
+    assert inbox[0].md5sum == crowd._md5sum
+    assert "MSG: mros_comm_measure/Coordinate" in inbox[0].definition
+    got = crowd.deserialize(inbox[0].data)
+    assert samples.differences(samples.sample("peer_msgs/Crowd", 0, 3), got) == []
+    subscription.close()
+    peer.ask(f"unadvertise {topic}", f"unadvertised {topic}")
+
+
+def mismatch_to_us(node: Node, peer: Peer, topic: str) -> None:
+    """A publisher of another type is not understood as ours: no message, no connection, and others unharmed."""
+    wrong, right = Inbox(), Inbox()
+    peer.ask(f"advertise std_msgs/String {topic} 0", f"advertised {topic}")
+    mistaken = node.subscribe(topic, "mros_comm_measure/Coordinate", wrong)
+    subscription = node.subscribe(topic, "std_msgs/String", right)
+    wait_until(lambda: peer.subscribers(topic) >= 1, "the right subscription reaches the peer")
+    peer.say(f"publish {topic} 0 16")
+    right.wait(1)
+    assert wrong.messages == []
+    assert mistaken.publisher_count == 0
+    subscription.close()
+    mistaken.close()
+    peer.ask(f"unadvertise {topic}", f"unadvertised {topic}")
+
+
+def mismatch_to_peer(node: Node, peer: Peer, topic: str) -> None:
+    """A subscriber of another type is refused; the publisher goes on."""
+    with node.publisher(topic, "mros_comm_measure/Coordinate") as publisher:
+        peer.ask(f"subscribe std_msgs/String {topic} 1", f"subscribed {topic}")
+        inbox = Inbox()
+        with node.subscribe(topic, "mros_comm_measure/Coordinate", inbox):
+            publisher.publish(message("mros_comm_measure/Coordinate", 0, 0))
+            inbox.wait(1)
+        assert peer.told(f"got {topic}") == []
+        assert publisher.subscriber_count == 0
     peer.ask(f"unsubscribe {topic}", f"unsubscribed {topic}")
 
 

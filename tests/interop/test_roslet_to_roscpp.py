@@ -15,6 +15,10 @@ def test_every_message_arrives_whole_and_in_order(node: Node, roscpp: Peer, case
     exchange.send(node, roscpp, case, topic)
 
 
+def test_a_subscriber_of_another_type_is_refused(node: Node, roscpp: Peer, topic: str) -> None:
+    exchange.mismatch_to_peer(node, roscpp, topic)
+
+
 def test_a_latched_message_reaches_a_late_subscriber(node: Node, roscpp: Peer, topic: str) -> None:
     exchange.latched_to_peer(node, roscpp, topic)
 

@@ -15,6 +15,10 @@ def test_every_message_arrives_whole_and_in_order(node: Node, rospy: Peer, case:
     exchange.send(node, rospy, case, topic)
 
 
+def test_a_subscriber_of_another_type_is_refused(node: Node, rospy: Peer, topic: str) -> None:
+    exchange.mismatch_to_peer(node, rospy, topic)
+
+
 def test_a_latched_message_reaches_a_late_subscriber(node: Node, rospy: Peer, topic: str) -> None:
     exchange.latched_to_peer(node, rospy, topic)
 

@@ -15,6 +15,14 @@ def test_every_message_arrives_whole_and_in_order(node: Node, rospy: Peer, case:
     exchange.receive(node, rospy, case, topic)
 
 
+def test_a_subscription_of_any_type_gets_the_bytes(node: Node, rospy: Peer, topic: str) -> None:
+    exchange.raw_to_us(node, rospy, topic)
+
+
+def test_a_publisher_of_another_type_is_refused(node: Node, rospy: Peer, topic: str) -> None:
+    exchange.mismatch_to_us(node, rospy, topic)
+
+
 def test_a_latched_message_reaches_a_late_subscriber(node: Node, rospy: Peer, topic: str) -> None:
     exchange.latched_to_us(node, rospy, topic)
 
