@@ -23,6 +23,7 @@ _LOCATIONS = {
     "jazzy": CACHE / "jazzy/bin/python",
     "cyclone": CACHE / "cyclone/bin/python",
     "roscpp": CACHE / "ros1/bin/roscpp_peer",
+    "ros1-definitions": CACHE / "ros1-definitions/usr/share",
     "ros1-messages": CACHE / "ros1/python",
     "rospy": pathlib.Path("/usr/lib/python3/dist-packages/rospy"),
     "genpy": pathlib.Path("/usr/lib/python3/dist-packages/genpy"),

@@ -66,7 +66,7 @@ def test_nested_names_are_of_the_own_package_unless_one_is_given() -> None:
 
 
 def test_comments_blank_lines_and_odd_white_space_mean_nothing() -> None:
-    text = "# @verbatim (language=\"comment\")\n  \t# x\n\n\tint32  \tx  7 # seven\r\n\nstring s 'a' # 'b'\n# end"
+    text = "# @verbatim (language=)\n  \t# x\n\n\tint32  \tx  7 # seven\r\n\nstring s 'a' # 'b'\n# end"
     assert message(text).fields == (
         Field("x", FieldType("int32", None, "int32"), 7),
         Field("s", FieldType("string", None, "string"), "a"),

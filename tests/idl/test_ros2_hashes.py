@@ -1,4 +1,5 @@
-"""ROS 2 type descriptions and hashes, against those that the wheels ship and those that ROS 2's generator makes."""
+"""ROS 2 type descriptions and hashes, against those that the wheels ship and those that ROS 2's generator
+makes."""
 
 from __future__ import annotations
 
@@ -7,14 +8,15 @@ import pathlib
 import subprocess
 from typing import Any
 
-import peers
 import pytest
 
+import peers
 from roslet.errors import UnknownType, Unsupported
 from roslet.idl import Registry, type_description, type_hash
 
 REFERENCE = pathlib.Path(peers.ROOT, "tests/reference/rosidl_definitions.py")
-# At least this many interfaces come with each of the wheels' installations; fewer means that the test looks wrongly.
+# At least this many interfaces come with each of the wheels' installations; fewer means that the test looks
+# wrongly.
 SHIPPED = 180
 
 

@@ -1,11 +1,15 @@
-"""What genmsg and genpy, ROS 1's own tools, say of every definition. Runs under Debian's Python, knows nothing of roslet.
+"""What genmsg and genpy, ROS 1's own tools, say of definitions. Runs under Debian's Python, knows no roslet.
 
-    genmsg_definitions.py files SHARE...     every .msg and .srv in the packages of these directories, read by genmsg
+    genmsg_definitions.py files SHARE...     every .msg and .srv in the packages of these directories
     genmsg_definitions.py classes            every class that genpy generated into an installed package
+    genmsg_definitions.py values             stdin: JSON list of .msg texts of a package `pkg`
 
-Prints JSON: {"pkg/msg/Name": {"md5": ..., "text": ...}, "pkg/srv/Name": {"md5": ..., "request": ..., "response": ...}}
-with `text`, `request` and `response` the full texts; a definition that genmsg refuses has only "error".
+The first two print {"pkg/msg/Name": {"md5": ..., "text": ...}, "pkg/srv/Name": {"md5": ..., "request": ...,
+"response": ...}} with full texts. The third prints for each text
+{"fields": [[name, type]], "constants": [[name, type, value, text]]}. What genmsg refuses has only "error".
 """
+
+# mypy: ignore-errors
 
 import importlib
 import json
@@ -33,7 +37,7 @@ def from_files(shares):
                 files = sorted(os.listdir(directory)) if os.path.isdir(directory) else []
                 for file in files:
                     if file.endswith("." + kind):
-                        key = "%s/%s/%s" % (package, kind, file[: -len(kind) - 1])
+                        key = f"{package}/{kind}/{file[: -len(kind) - 1]}"
                         if key not in found:
                             found[key] = describe(os.path.join(directory, file), key, paths)
     return found
@@ -57,7 +61,7 @@ def describe(path, key, paths):
             "response": genmsg.gentools.compute_full_text(context, spec.response),
         }
     except Exception as error:  # whatever the reference raises is its verdict
-        return {"error": "%s: %s" % (type(error).__name__, error)}
+        return {"error": f"{type(error).__name__}: {error}"}
 
 
 def from_classes():
@@ -69,7 +73,7 @@ def from_classes():
             for kind in ("msg", "srv"):
                 if os.path.exists(os.path.join(root, module.name, kind, "__init__.py")):
                     try:
-                        package = importlib.import_module("%s.%s" % (module.name, kind))
+                        package = importlib.import_module(f"{module.name}.{kind}")
                     except ImportError:
                         continue
                     found.update(describe_classes(module.name, kind, vars(package)))
@@ -81,7 +85,7 @@ def describe_classes(package, kind, names):
     for entry in names.values():
         if not isinstance(entry, type) or "/" not in getattr(entry, "_type", ""):
             continue
-        key = "%s/%s/%s" % (package, kind, entry._type.partition("/")[2])
+        key = f"{package}/{kind}/{entry._type.partition('/')[2]}"
         if kind == "msg":
             found[key] = {"md5": entry._md5sum, "text": entry._full_text}
         elif hasattr(entry, "_request_class"):
@@ -93,5 +97,23 @@ def describe_classes(package, kind, names):
     return found
 
 
+def values(texts):
+    found = []
+    for text in texts:
+        context = genmsg.msg_loader.MsgContext.create_default()
+        try:
+            spec = genmsg.msg_loader.load_msg_from_string(context, text, "pkg/Thing")
+        except Exception as error:  # whatever the reference raises is its verdict
+            found.append({"error": f"{type(error).__name__}: {error}"})
+            continue
+        constants = [[one.name, one.type, one.val, one.val_text] for one in spec.constants]
+        found.append({"fields": [[name, kind] for kind, name in spec.fields()], "constants": constants})
+    return found
+
+
 if __name__ == "__main__":
-    json.dump(from_files(sys.argv[2:]) if sys.argv[1] == "files" else from_classes(), sys.stdout)
+    if sys.argv[1] == "values":
+        answer = values(json.load(sys.stdin))
+    else:
+        answer = from_files(sys.argv[2:]) if sys.argv[1] == "files" else from_classes()
+    json.dump(answer, sys.stdout)

@@ -1,13 +1,14 @@
-"""What ROS 2's own tools say of definitions. Runs under the Python of the ROS 2 wheels, knows nothing of roslet.
+"""What ROS 2's own tools say of definitions. Runs under the Python of the ROS 2 wheels, knows no roslet.
 
-rosidl_definitions.py values             stdin: JSON list of .msg texts of a package `pkg`; prints for each
-                                         {"fields": [[name, type, default]], "constants": [[name, type, value]]}
-                                         or {"error": ...}, as rosidl_adapter reads them
+rosidl_definitions.py values
+    stdin: JSON list of .msg texts of a package `pkg`; prints for each, as rosidl_adapter reads it,
+    {"fields": [[name, type, default]], "constants": [[name, type, value]]} or {"error": ...}
 rosidl_definitions.py describe SHARE PACKAGE DIR
-                                         runs the adapter and the type description generator on the files in
-                                         DIR/msg, DIR/srv and DIR/action; prints {type name: the JSON they write};
-                                         SHARE holds the packages that they use
+    runs the adapter and the type description generator on the files in DIR/msg, DIR/srv and DIR/action;
+    prints {type name: the JSON that they write}; SHARE holds the packages that the files use
 """
+
+# mypy: ignore-errors
 
 import contextlib
 import io

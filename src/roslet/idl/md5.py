@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from roslet.errors import Unsupported
 from roslet.idl.records import Action, Message, Service, TypeName
+from roslet.idl.spelling import RULE_LENGTH
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from roslet.idl.registry import Registry
 
-_RULE = "=" * 80 + "\n"
+_RULE = "=" * RULE_LENGTH + "\n"
 
 
 def md5sum(registry: Registry, name: TypeName | str) -> str:

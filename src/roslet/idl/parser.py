@@ -95,7 +95,9 @@ class _Reader:
             rest = [self.message(self.part_name("Response"), *part) for part in parts[1:]]
             response = self.join(self.part_name("Response"), rest)
             return Service(self.name, self.dialect, request, response, None, text, self.file)
-        self.expect_parts(parts, 2, "a service has a request and a response, with one line --- between them")
+        self.expect_parts(
+            text, parts, 2, "a service has a request and a response, with one line --- between them"
+        )
         request = self.message(self.part_name("_Request"), *parts[0])
         response = self.message(self.part_name("_Response"), *parts[1])
         event = ros2_event(self.name, self.file)
@@ -104,7 +106,7 @@ class _Reader:
     def action(self, text: str) -> Action:
         parts = self.parts(text)
         self.expect_parts(
-            parts, 3, "an action has a goal, a result and a feedback, with lines --- between them"
+            text, parts, 3, "an action has a goal, a result and a feedback, with lines --- between them"
         )
         separator = "" if self.dialect == "ros1" else "_"
         goal, result, feedback = [
@@ -114,17 +116,16 @@ class _Reader:
         derive = ros1_action if self.dialect == "ros1" else ros2_action
         return derive(self.name, goal, result, feedback, text, self.file)
 
-    def expect_parts(self, parts: list[tuple[str, int]], count: int, rule: str) -> None:
+    def expect_parts(self, text: str, parts: list[tuple[str, int]], count: int, rule: str) -> None:
         if len(parts) > count:
             self.fail("one line --- too many: " + rule, 1, parts[count][1] - 1)
         if len(parts) < count:
-            for text, first_line in parts:
-                for line, code in enumerate(text.split("\n"), first_line):
+            for part, first_line in parts:
+                for line, code in enumerate(part.split("\n"), first_line):
                     if code.lstrip().startswith(_SEPARATOR):
                         column = len(code) - len(code.lstrip()) + 1
                         self.fail(_SEPARATOR_RULE, column, line)
-            last_text, first_line = parts[-1]
-            last_line = first_line + last_text.rstrip("\n").count("\n")
+            last_line = text.rstrip("\n").count("\n") + 1
             self.fail("a line --- is missing: " + rule, 1, last_line)
 
     def part_name(self, suffix: str) -> TypeName:

@@ -7,8 +7,8 @@ import os
 from roslet.errors import DefinitionError, RecursiveType, UnknownType
 from roslet.idl.parser import parse
 from roslet.idl.records import Action, Field, Message, Service, TypeName
-from roslet.idl.sources import bundled, environment_sources, legal_names, load_source
-from roslet.idl.spelling import KINDS, is_word, parse_type_name
+from roslet.idl.sources import Texts, bundled, environment_sources, legal_names, load_source
+from roslet.idl.spelling import KINDS, is_word, parse_type_name, split_full_text
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from typing import NoReturn
 
     from roslet.idl.records import Dialect, Interface, Kind
-    from roslet.idl.sources import Packages, Source
+    from roslet.idl.sources import Source
 
 # Longest first where one ends with another.
 _ROS1_ACTION_SUFFIXES = (
@@ -46,7 +46,7 @@ class Registry:
     def __init__(self, dialect: Dialect, environment: Mapping[str, str] | None = os.environ) -> None:
         self.dialect: Dialect = dialect
         self._environment = environment
-        self._loaded: list[Packages] = []
+        self._loaded: list[Source] = []
         self._fixed: list[Source] | None = None
         self._records: dict[TypeName, Interface] = {}
         self._texts: dict[str, str] = {}
@@ -67,6 +67,28 @@ class Registry:
         self._texts.clear()
         self._checked.clear()
         return names
+
+    def load_full_text(self, name: TypeName | str, text: str) -> list[TypeName]:
+        """Put a message and all it is made of before all others, from the `message_definition` of a connection header.
+
+        `text` is what `full_text` makes: the message's definition, then each nested type's after a line of 80 `=` and one
+        of `MSG: package/Name`. Returns the names, sorted; a name that is there twice counts once. Raises DefinitionError
+        for a section without a name; the definitions themselves are parsed when they are asked for.
+        """
+        first = self._type_name(name, "msg")
+        texts = split_full_text(first, text)
+        source = Texts(
+            {(name.package, name.kind, name.name): part for name, part in texts.items()},
+            f"message_definition of {first.text(self.dialect)}",
+        )
+        self._put_first(source)
+        return sorted(texts)
+
+    def _put_first(self, source: Source) -> None:
+        self._loaded.insert(0, source)
+        self._records.clear()
+        self._texts.clear()
+        self._checked.clear()
 
     def message(self, name: TypeName | str) -> Message:
         """The message, given or derived, whose nested types all exist.
@@ -177,7 +199,7 @@ class Registry:
             for owner in owners:
                 path = source.find(owner.package, owner.kind, owner.name)
                 if path is not None:
-                    interface = self._records.get(owner) or self._read(owner, path)
+                    interface = self._records.get(owner) or self._read(owner, path, source)
                     if owner is name:
                         return interface
                     found = next((part for part in _parts(interface) if part.name.name == name.name), None)
@@ -186,11 +208,14 @@ class Registry:
                     return found
         return None
 
-    def _read(self, name: TypeName, path: str) -> Interface:
-        # Universal newlines, as genmsg reads; bytes that are no UTF-8 are kept, since a comment may hold
-        # anything.
-        with open(path, encoding="utf-8", errors="surrogateescape") as file:
-            text = file.read()
+    def _read(self, name: TypeName, path: str, source: Source) -> Interface:
+        if isinstance(source, Texts):
+            text = source.read(name.package, name.kind, name.name)
+        else:
+            # Universal newlines, as genmsg reads; bytes that are no UTF-8 are kept, since a comment may hold
+            # anything.
+            with open(path, encoding="utf-8", errors="surrogateescape") as file:
+                text = file.read()
         if text[:1] == "\ufeff":
             text = text[1:]
         interface = parse(text, name, self.dialect, path)

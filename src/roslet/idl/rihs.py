@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from roslet.errors import Unsupported
-from roslet.idl.records import Field, FieldType, Message, Service, TypeName
+from roslet.idl.records import Array, Field, FieldType, Message, Service, TypeName
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -106,10 +106,14 @@ def _part(name: str, type_name: TypeName) -> Field:
 def _field(field: Field, defaults: bool) -> dict[str, Any]:
     type_ = field.type
     array = type_.array
+    if type_.primitive == "wstring" and type_.string_bound is not None and array == Array("unbounded"):
+        # Up to Kilted, rosidl takes the bound of a wstring for that of the sequence as well, so that peers
+        # describe, and hash, wstring<=9[] as wstring<=9[<=9].
+        array = Array("bounded", type_.string_bound)
     described: dict[str, Any] = {
         "name": field.name,
         "type": {
-            "type_id": _type_id(type_),
+            "type_id": _type_id(type_, array),
             "capacity": 0 if array is None else array.size or 0,
             "string_capacity": type_.string_bound or 0,
             "nested_type_name": "" if type_.message is None else str(type_.message),
@@ -120,14 +124,14 @@ def _field(field: Field, defaults: bool) -> dict[str, Any]:
     return described
 
 
-def _type_id(type_: FieldType) -> int:
+def _type_id(type_: FieldType, array: Array | None) -> int:
     if type_.primitive is None:
         type_id = _NESTED
     elif type_.string_bound is not None:
         type_id = _BOUNDED_TYPE_IDS[type_.primitive]
     else:
         type_id = _TYPE_IDS["byte" if type_.spelled == "byte" else type_.primitive]
-    return type_id if type_.array is None else type_id + _ARRAY_OFFSETS[type_.array.kind]
+    return type_id if array is None else type_id + _ARRAY_OFFSETS[array.kind]
 
 
 def _default_text(value: Value) -> str:

@@ -73,6 +73,30 @@ class Packages:
         return [] if directories is None else _definitions(directories[kind], kind)
 
 
+class Texts:
+    """Definitions that came as text, such as a connection header's. A path is what stands for a file's name in errors."""
+
+    def __init__(self, texts: Mapping[tuple[str, Kind, str], str], origin: str) -> None:
+        self.texts = texts
+        self.origin = origin
+
+    def find(self, package: str, kind: Kind, name: str) -> str | None:
+        """The name under which `read` has the text, or None."""
+        return f"<{self.origin}>/{package}/{kind}/{name}" if (package, kind, name) in self.texts else None
+
+    def read(self, package: str, kind: Kind, name: str) -> str:
+        """The text."""
+        return self.texts[package, kind, name]
+
+    def packages(self) -> list[str]:
+        """The packages known."""
+        return sorted({package for package, _, _ in self.texts})
+
+    def names(self, package: str, kind: Kind) -> list[str]:
+        """The names that the package defines."""
+        return sorted(name for owner, its, name in self.texts if (owner, its) == (package, kind))
+
+
 class Workspace(Packages):
     """A directory in $ROS_PACKAGE_PATH: its children first, and only when they lack a package a crawl for
     package.xml.
@@ -112,7 +136,7 @@ class Workspace(Packages):
 
 
 if TYPE_CHECKING:
-    Source: TypeAlias = Share | Packages
+    Source: TypeAlias = Share | Packages | Texts
 
 
 def bundled(dialect: Dialect) -> Share:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from roslet.errors import InvalidName
+from roslet.errors import DefinitionError, InvalidName
 from roslet.idl.records import FieldType, TypeName
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from roslet.idl.records import Dialect, Kind
+
+# Between the parts of a full text stands a line of so many `=`.
+RULE_LENGTH = 80
 
 KINDS: tuple[Kind, ...] = ("msg", "srv", "action")
 
@@ -120,3 +123,27 @@ def parse_type_name(text: str, kind: Kind = "msg") -> TypeName:
     if not is_word(parts[0].replace("-", "_")) or not is_word(parts[-1]):
         raise InvalidName(f"{text!r} is no type name: packages and names are letters, digits and underscores")
     return TypeName(parts[0], kind, parts[-1])
+
+
+def split_full_text(name: TypeName, text: str) -> dict[TypeName, str]:
+    """The definitions that a ROS 1 full text holds: that of `name`, then those it names.
+
+    Raises DefinitionError (with the line) where a section does not begin with `MSG: package/Name`, InvalidName for a wrong
+    name.
+    """
+    sections: dict[TypeName, list[str]] = {name: []}
+    lines = sections[name]
+    expected = False
+    for number, line in enumerate(text.split("\n"), 1):
+        if expected:
+            word, _, rest = line.partition(":")
+            if word.strip() != "MSG" or not rest.strip():
+                raise DefinitionError(f"expected MSG: package/Name, got {line!r}", "<full text>", number, 1)
+            lines = []
+            sections.setdefault(parse_type_name(rest.strip()), lines)
+            expected = False
+        elif len(line) >= RULE_LENGTH and not line.strip("= \r"):
+            expected = True
+        else:
+            lines.append(line)
+    return {name: "\n".join(lines) for name, lines in sections.items()}
