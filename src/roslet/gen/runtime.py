@@ -108,6 +108,16 @@ def load(path: str | PathLike[str], dialect: Dialect | None = None) -> Types:
     return Types(dialect or _guess(str(path)), sorted(set(names)))
 
 
+def message_class_of(name: str, definition: str) -> type[Message]:
+    """The ROS 1 class of a message whose definition a peer sent (`message_definition` in a connection header).
+
+    The definition, and those of the nested types with it, come before all others of their names in this process from
+    then on. Raises DefinitionError where the text is wrong or incomplete.
+    """
+    _forget("ros1", registry("ros1").load_full_text(name, definition))
+    return message_class("ros1", name)
+
+
 def _guess(path: str) -> Dialect:
     import os
 
@@ -432,6 +442,7 @@ __all__ = [
     "interface_class",
     "load",
     "message_class",
+    "message_class_of",
     "module_name",
     "registry",
     "service_class",
