@@ -1,0 +1,134 @@
+"""What the commands share: how they are declared, their common options, their exit codes, their errors."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from typing import TYPE_CHECKING, Any
+
+from roslet.errors import RosletError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    Arguments = argparse.Namespace
+    Function = Callable[[argparse.Namespace], int]
+
+OK = 0
+FAILED = 1
+USAGE = 2
+UNREACHABLE = 3
+INTERRUPTED = 130  # 128 + SIGINT, as shells report it
+TERMINATED = 143  # 128 + SIGTERM
+BROKEN_PIPE = 141  # 128 + SIGPIPE
+
+EXIT_CODES = """exit codes:
+  0    done
+  1    failed: refused, not found, wrong or incomplete
+  2    wrong usage
+  3    nobody reachable: the master, a node or a service does not answer
+  130  interrupted (Ctrl-C); 143 terminated; 141 nobody reads the output
+"""
+
+
+class CommandFailed(RosletError):
+    """The command cannot do what was asked; the text is for people. `code` is the exit code."""
+
+    def __init__(self, text: str, code: int = FAILED) -> None:
+        super().__init__(text)
+        self.code = code
+
+
+class Formatter(argparse.RawDescriptionHelpFormatter):
+    """Help with examples as written, and room for the names of commands."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog, max_help_position=30)
+
+
+class Group:
+    """One group of commands under construction: `roslet GROUP COMMAND`."""
+
+    def __init__(self, parser: argparse.ArgumentParser) -> None:
+        self._parser = parser
+        self._commands = parser.add_subparsers(
+            title="commands", metavar="COMMAND", dest="command", required=True
+        )
+
+    def command(
+        self, name: str, function: Function, summary: str, example: str, common: str = ""
+    ) -> argparse.ArgumentParser:
+        """Declare a command; `common` names the options it shares with others (see `finish`)."""
+        parser = self._commands.add_parser(
+            name,
+            help=summary,
+            description=sentence(summary),
+            formatter_class=Formatter,
+        )
+        return finish(parser, function, example, common)
+
+
+def sentence(summary: str) -> str:
+    """A summary as a sentence."""
+    return summary[:1].upper() + summary[1:] + "."
+
+
+def finish(
+    parser: argparse.ArgumentParser, function: Function, example: str, common: str = ""
+) -> argparse.ArgumentParser:
+    """Give a parser its function, its example and, of the words in `common`, the options: network, types, json."""
+    parser.set_defaults(function=function)
+    indented = "\n".join("  " + line for line in example.strip().splitlines())
+    parser.epilog = f"examples:\n{indented}\n\n`roslet --help` lists the exit codes."
+    options = common.split()
+    if "network" in options:
+        parser.add_argument(
+            "--network",
+            metavar="URL",
+            default="ros1://",
+            help="ros1://host:port; default: $ROS_MASTER_URI, else localhost:11311",
+        )
+    if "types" in options:
+        parser.add_argument(
+            "--types",
+            metavar="DIR",
+            action="append",
+            default=[],
+            help="load definitions from a package or workspace; may be repeated",
+        )
+    if "json" in options:
+        parser.add_argument("--json", action="store_true", help="print JSON")
+    return parser
+
+
+def positive(text: str) -> float:
+    """An argument type: a number above zero."""
+    value = float(text)
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is not above zero")
+    return value
+
+
+def count(text: str) -> int:
+    """An argument type: an integer of at least one."""
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text} is not at least 1")
+    return value
+
+
+def full_name(name: str) -> str:
+    """A graph name as given on the command line: relative ones are in $ROS_NAMESPACE. Raises InvalidName."""
+    from roslet.names import join, resolve
+
+    namespace = "/" + os.environ.get("ROS_NAMESPACE", "").strip("/")
+    return resolve(name, join(namespace, "roslet"))
+
+
+def load_types(arguments: Any) -> None:
+    """Load what --types names, for every type that this process asks for from now on."""
+    if arguments.types:
+        from roslet.gen.runtime import load
+
+        for path in arguments.types:
+            load(path)
