@@ -42,6 +42,10 @@ MAX_WAITING = 10_000
 # milliseconds.
 NOTIFICATION_TIMEOUT = 10.0
 
+# Connections that the kernel holds until they are accepted: past it clients wait a second to try again, and a
+# launch file starts a hundred nodes at once.
+BACKLOG = 1024
+
 # Seconds without accepting when the process has no descriptor left and no connection to give up.
 ACCEPT_PAUSE = 0.1
 _EVICTED_AT_ONCE = 16
@@ -73,7 +77,7 @@ class MasterServer:
         self._streams: dict[Stream, None] = {}  # the least recently used first
         self._peers: dict[str, _Peer] = {}
         self._delivering = False
-        self._listener = listen(host, port)
+        self._listener = listen(host, port, BACKLOG)
         self.port = int(self._listener.getsockname()[1])
         self.uri = f"http://{_advertised(host)}:{self.port}/"
         self.master = Master(self.uri, os.getpid())
