@@ -247,6 +247,15 @@ def test_an_error_in_a_loaded_file_names_it_when_it_is_asked_for(tmp_path: pathl
         registry.message("pkg/A")
 
 
+def test_a_file_that_cannot_be_read_is_named(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    registry = Registry("ros1", None)
+    registry.load(write(tmp_path / "pkg", {"msg/A.msg": "int8 x\n"}))
+    monkeypatch.setattr("os.path.isfile", lambda path: True)
+    (tmp_path / "pkg/msg/A.msg").unlink()
+    with pytest.raises(DefinitionError, match=r"/pkg/msg/A\.msg: cannot be read: No such file or directory"):
+        registry.message("pkg/A")
+
+
 def test_files_with_illegal_names_are_not_listed(tmp_path: pathlib.Path) -> None:
     write(tmp_path / "pkg", {"msg/A.msg": "", "msg/b.msg": "", "msg/C D.msg": "", "msg/E.txt": ""})
     assert Registry("ros2", None).load(tmp_path / "pkg") == [TypeName("pkg", "msg", "A")]

@@ -62,26 +62,21 @@ class Registry:
         names = sorted(self._names_of(source, None, None))
         if not names:
             raise DefinitionError("no .msg, .srv or .action file in the packages here", os.fspath(path))
-        self._loaded.insert(0, source)
-        self._records.clear()
-        self._texts.clear()
-        self._checked.clear()
+        self._put_first(source)
         return names
 
     def load_full_text(self, name: TypeName | str, text: str) -> list[TypeName]:
-        """Put a message and all it is made of before all others, from the `message_definition` of a connection header.
+        """Put a message and all it is made of before all others, from the `message_definition` of a
+        connection header.
 
-        `text` is what `full_text` makes: the message's definition, then each nested type's after a line of 80 `=` and one
-        of `MSG: package/Name`. Returns the names, sorted; a name that is there twice counts once. Raises DefinitionError
-        for a section without a name; the definitions themselves are parsed when they are asked for.
+        `text` is what `full_text` makes: the message's definition, then each nested type's after a line of 80
+        `=` and one of `MSG: package/Name`. Returns the names, sorted; a name that is there twice counts once.
+        Raises DefinitionError for a section without a name; the definitions themselves are parsed when they
+        are asked for.
         """
         first = self._type_name(name, "msg")
         texts = split_full_text(first, text)
-        source = Texts(
-            {(name.package, name.kind, name.name): part for name, part in texts.items()},
-            f"message_definition of {first.text(self.dialect)}",
-        )
-        self._put_first(source)
+        self._put_first(Texts(texts, f"message_definition of {first.text(self.dialect)}"))
         return sorted(texts)
 
     def _put_first(self, source: Source) -> None:
@@ -209,13 +204,10 @@ class Registry:
         return None
 
     def _read(self, name: TypeName, path: str, source: Source) -> Interface:
-        if isinstance(source, Texts):
-            text = source.read(name.package, name.kind, name.name)
-        else:
-            # Universal newlines, as genmsg reads; bytes that are no UTF-8 are kept, since a comment may hold
-            # anything.
-            with open(path, encoding="utf-8", errors="surrogateescape") as file:
-                text = file.read()
+        try:
+            text = source.read(path)
+        except OSError as error:
+            raise DefinitionError(f"cannot be read: {error.strerror}", path) from error
         if text[:1] == "\ufeff":
             text = text[1:]
         interface = parse(text, name, self.dialect, path)

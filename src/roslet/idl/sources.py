@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from typing import TypeAlias
 
-    from roslet.idl.records import Dialect, Kind
+    from roslet.idl.records import Dialect, Kind, TypeName
 
 # A crawl for packages goes no deeper and reads no more directories than this, so that a mistaken path such as
 # / ends within a second. Real workspaces nest four or five deep and have hundreds.
@@ -35,6 +35,10 @@ class Share:
         """The path of the file, or None."""
         path = f"{self.root}/{package}/{kind}/{name}.{kind}"
         return path if os.path.isfile(path) else None
+
+    def read(self, path: str) -> str:
+        """The text of the file that `find` found. Raises OSError."""
+        return _read_file(path)
 
     def packages(self) -> list[str]:
         """The packages that have a directory for definitions."""
@@ -63,6 +67,10 @@ class Packages:
         path = f"{directories[kind]}/{name}.{kind}"
         return path if os.path.isfile(path) else None
 
+    def read(self, path: str) -> str:
+        """The text of the file that `find` found. Raises OSError."""
+        return _read_file(path)
+
     def packages(self) -> list[str]:
         """The packages known."""
         return list(self.directories)
@@ -74,27 +82,29 @@ class Packages:
 
 
 class Texts:
-    """Definitions that came as text, such as a connection header's. A path is what stands for a file's name in errors."""
+    """Definitions that came as text, such as a connection header's; their paths only serve error messages."""
 
-    def __init__(self, texts: Mapping[tuple[str, Kind, str], str], origin: str) -> None:
-        self.texts = texts
+    def __init__(self, texts: Mapping[TypeName, str], origin: str) -> None:
+        self.texts = {f"<{origin}>/{name}": text for name, text in texts.items()}
+        self.defined = list(texts)
         self.origin = origin
 
     def find(self, package: str, kind: Kind, name: str) -> str | None:
-        """The name under which `read` has the text, or None."""
-        return f"<{self.origin}>/{package}/{kind}/{name}" if (package, kind, name) in self.texts else None
+        """What stands for the path of a file, or None."""
+        path = f"<{self.origin}>/{package}/{kind}/{name}"
+        return path if path in self.texts else None
 
-    def read(self, package: str, kind: Kind, name: str) -> str:
-        """The text."""
-        return self.texts[package, kind, name]
+    def read(self, path: str) -> str:
+        """The text that `find` found."""
+        return self.texts[path]
 
     def packages(self) -> list[str]:
         """The packages known."""
-        return sorted({package for package, _, _ in self.texts})
+        return sorted({name.package for name in self.defined})
 
     def names(self, package: str, kind: Kind) -> list[str]:
         """The names that the package defines."""
-        return sorted(name for owner, its, name in self.texts if (owner, its) == (package, kind))
+        return sorted([name.name for name in self.defined if (name.package, name.kind) == (package, kind)])
 
 
 class Workspace(Packages):
@@ -233,6 +243,13 @@ def crawl(root: str, bare: bool = False) -> tuple[dict[str, dict[Kind, str]], bo
                 following += [entry.path for entry in entries if entry.name[0] != "." and entry.is_dir()]
         level = following
     return found, not level
+
+
+def _read_file(path: str) -> str:
+    # Universal newlines, as genmsg reads; bytes that are no UTF-8 are kept, since a comment may hold
+    # anything.
+    with open(path, encoding="utf-8", errors="surrogateescape") as file:
+        return file.read()
 
 
 def _names(directory: str) -> list[str]:

@@ -128,8 +128,8 @@ def parse_type_name(text: str, kind: Kind = "msg") -> TypeName:
 def split_full_text(name: TypeName, text: str) -> dict[TypeName, str]:
     """The definitions that a ROS 1 full text holds: that of `name`, then those it names.
 
-    Raises DefinitionError (with the line) where a section does not begin with `MSG: package/Name`, InvalidName for a wrong
-    name.
+    Raises DefinitionError (with the line) where a section does not begin with `MSG: package/Name`,
+    InvalidName for a wrong name.
     """
     sections: dict[TypeName, list[str]] = {name: []}
     lines = sections[name]
