@@ -134,30 +134,30 @@ def test_a_client_that_sent_the_body_already_is_not_asked() -> None:
 @pytest.mark.parametrize(
     ("data", "reason"),
     [
-        (b"garbage\r\n\r\n", "bad_start_line"),
-        (b"POST / FTP/1.1\r\n\r\n", "bad_start_line"),
-        (b"POST / HTTP/2.0\r\n\r\n", "unsupported_version"),
-        (b"POST / HTTP/1.1\r\nno colon\r\n\r\n", "bad_header"),
-        (b"POST / HTTP/1.1\r\n: empty\r\n\r\n", "bad_header"),
-        (b"POST / HTTP/1.1\r\nContent-Length : 3\r\n\r\nabc", "bad_header"),
-        (b"POST / HTTP/1.1\r\nContent-Length: -1\r\n\r\n", "bad_content_length"),
-        (b"POST / HTTP/1.1\r\nContent-Length: 1x\r\n\r\n", "bad_content_length"),
-        (b"POST / HTTP/1.1\r\nContent-Length: \xc2\xb2\r\n\r\n", "bad_content_length"),
-        (b"POST / HTTP/1.1\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\nab", "bad_content_length"),
-        (b"POST / HTTP/1.1\r\nContent-Length: 9999999999999999999999\r\n\r\n", "bad_content_length"),
-        (b"POST / HTTP/1.1\r\nContent-Length: 101\r\n\r\n", "body_too_large"),
-        (b"POST / HTTP/1.1\r\nTransfer-Encoding: gzip\r\n\r\n", "unsupported_encoding"),
-        (b"POST / HTTP/1.1\r\nContent-Encoding: gzip\r\nContent-Length: 1\r\n\r\nx", "unsupported_encoding"),
-        (b"POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n", "bad_chunk"),
-        (b"POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n1\r\nabc", "bad_chunk"),
-        (b"POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n" + b"1" * 300, "bad_chunk"),
-        (b"POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nff\r\n", "body_too_large"),
+        (b"garbage\r\n\r\n", "bad-start-line"),
+        (b"POST / FTP/1.1\r\n\r\n", "bad-start-line"),
+        (b"POST / HTTP/2.0\r\n\r\n", "unsupported-version"),
+        (b"POST / HTTP/1.1\r\nno colon\r\n\r\n", "bad-header"),
+        (b"POST / HTTP/1.1\r\n: empty\r\n\r\n", "bad-header"),
+        (b"POST / HTTP/1.1\r\nContent-Length : 3\r\n\r\nabc", "bad-header"),
+        (b"POST / HTTP/1.1\r\nContent-Length: -1\r\n\r\n", "bad-content-length"),
+        (b"POST / HTTP/1.1\r\nContent-Length: 1x\r\n\r\n", "bad-content-length"),
+        (b"POST / HTTP/1.1\r\nContent-Length: \xc2\xb2\r\n\r\n", "bad-content-length"),
+        (b"POST / HTTP/1.1\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\nab", "bad-content-length"),
+        (b"POST / HTTP/1.1\r\nContent-Length: 9999999999999999999999\r\n\r\n", "bad-content-length"),
+        (b"POST / HTTP/1.1\r\nContent-Length: 101\r\n\r\n", "body-too-large"),
+        (b"POST / HTTP/1.1\r\nTransfer-Encoding: gzip\r\n\r\n", "unsupported-encoding"),
+        (b"POST / HTTP/1.1\r\nContent-Encoding: gzip\r\nContent-Length: 1\r\n\r\nx", "unsupported-encoding"),
+        (b"POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n", "bad-chunk"),
+        (b"POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n1\r\nabc", "bad-chunk"),
+        (b"POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n" + b"1" * 300, "bad-chunk"),
+        (b"POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nff\r\n", "body-too-large"),
         (
             b"POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n" + b"a: b\r\n" * 60,
-            "header_too_large",
+            "header-too-large",
         ),
-        (b"A" * 300, "header_too_large"),
-        (b"POST / HTTP/1.1\r\n" + b"a: b\r\n" * 60, "header_too_large"),
+        (b"A" * 300, "header-too-large"),
+        (b"POST / HTTP/1.1\r\n" + b"a: b\r\n" * 60, "header-too-large"),
     ],
 )
 def test_a_fault_ends_the_stream_under_its_reason(data: bytes, reason: str) -> None:
@@ -176,7 +176,7 @@ def test_what_was_complete_before_a_fault_is_still_returned() -> None:
     parser = http.RequestParser()
     assert len(parser.feed(ROSCPP_REQUEST + b"garbage\r\n\r\n")) == 1
     assert parser.error is not None
-    assert parser.error.reason == "bad_start_line"
+    assert parser.error.reason == "bad-start-line"
 
 
 def test_a_close_inside_a_response_is_named_at_every_byte() -> None:
@@ -200,7 +200,7 @@ def test_a_response_needs_a_status(data: bytes) -> None:
     parser = http.ResponseParser()
     assert parser.feed(data) == []
     assert parser.error is not None
-    assert parser.error.reason == "bad_start_line"
+    assert parser.error.reason == "bad-start-line"
 
 
 def test_what_is_emitted_is_parsed_back() -> None:

@@ -144,12 +144,12 @@ class MasterServer:
         """Close up to `most` connections, those that were silent for longest; how many were closed."""
         victims = list(self._streams)[:most]
         for stream in victims:
-            self.count("connection_evicted")
+            self.count("connection-evicted")
             stream.lose("evicted")
         return len(victims)
 
     def _pause_accepting(self) -> None:
-        self.count("no_descriptors")
+        self.count("no-descriptors")
         self.reactor.unregister(self._listener.fileno())
         self.reactor.call_at(self.reactor.now() + ACCEPT_PAUSE, self._resume_accepting)
 
@@ -197,7 +197,7 @@ class MasterServer:
             try:
                 peer = self._peers[api] = _Peer(self, api, self._timeout)
             except InvalidName:
-                self.count("bad_uri")
+                self.count("bad-uri")
         return peer
 
     def forget(self, api: str) -> None:
@@ -227,7 +227,7 @@ class _Peer:
         self._waiting.pop(about, None)
         if len(self._waiting) >= MAX_WAITING:
             del self._waiting[next(iter(self._waiting))]
-            self._server.count("notification_queue_full")
+            self._server.count("notification-queue-full")
         self._waiting[about] = notification
 
     def pump(self) -> None:
@@ -239,7 +239,7 @@ class _Peer:
             try:
                 client.call(self._current.method, self._current.params, reactor.now())
             except RosletError:
-                self._server.count("notification_unsendable")
+                self._server.count("notification-unsendable")
                 self._current = None
                 reactor.call_soon(self.pump)
                 return
@@ -277,7 +277,7 @@ class _Peer:
                 break
             notification, self._current = self._current, None
             if isinstance(event, CallFailed):
-                self._server.count("notification_failed")
+                self._server.count("notification-failed")
             elif notification is not None:
                 self._server.master.notification_answered(notification, event.value)
         # Not from within the stream's own call: pump may send and close.

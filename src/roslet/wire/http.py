@@ -4,8 +4,8 @@ Runs on MicroPython. The two parsers are machines without sockets: `feed` takes 
 the messages that are complete. What they hold is bounded by `max_header` and `max_body`; what a peer does
 wrong ends the stream, and `error` then holds a `ProtocolError` whose reason is one of
 
-    header_too_large  body_too_large  bad_start_line  bad_header  bad_content_length  bad_chunk
-    unsupported_encoding  unsupported_version  truncated
+    header-too-large  body-too-large  bad-start-line  bad-header  bad-content-length  bad-chunk
+    unsupported-encoding  unsupported-version  truncated
 
 Real peers that shaped this file: xmlrpcpp (roscpp) writes `Content-length:` and says nothing about keeping
 the connection; Python's http.server answers as HTTP/1.0 or 1.1 and capitalises otherwise; curl asks `Expect:
@@ -47,10 +47,10 @@ REASONS = {
 """Reason phrases of the statuses that this project sends (RFC 9110 section 15)."""
 
 STATUS_OF_REASON = {
-    "header_too_large": 431,
-    "body_too_large": 413,
-    "unsupported_encoding": 501,
-    "unsupported_version": 505,
+    "header-too-large": 431,
+    "body-too-large": 413,
+    "unsupported-encoding": 501,
+    "unsupported-version": 505,
 }
 """The status that tells a client why its stream was ended; 400 for all other reasons."""
 
@@ -162,7 +162,7 @@ class _Parser:
         if state == _TRAILER:
             return self._step_trailer(complete)
         if state == _UNTIL_CLOSE and len(self._buffer) > self.max_body:
-            raise ProtocolError("body_too_large", "more than %d bytes" % self.max_body)
+            raise ProtocolError("body-too-large", "more than %d bytes" % self.max_body)
         return False
 
     def _take(self, count: int) -> bytes:
@@ -206,7 +206,7 @@ class _Parser:
             start = end + 1
         self._scanned = len(buffer)
         if len(buffer) - self._position >= self.max_header:
-            raise ProtocolError("header_too_large", "more than %d bytes" % self.max_header)
+            raise ProtocolError("header-too-large", "more than %d bytes" % self.max_header)
         return -1
 
     def _step_header(self, complete: "list[Request | Response]") -> bool:
@@ -227,11 +227,11 @@ class _Parser:
                 continue
             name, colon, value = line.partition(":")
             if not colon or not name or name != name.strip():
-                raise ProtocolError("bad_header", "no field name in %r" % line[:60])
+                raise ProtocolError("bad-header", "no field name in %r" % line[:60])
             name = name.lower()
             value = value.strip()
             if name == "content-length" and headers.get(name, value) != value:
-                raise ProtocolError("bad_content_length", "two different lengths")
+                raise ProtocolError("bad-content-length", "two different lengths")
             headers[name] = value
         message = self._start_line(lines[0].strip(), headers)
         self._message = message
@@ -244,14 +244,14 @@ class _Parser:
         """Decide how the body is delimited (RFC 9112 section 6.3)."""
         encoding = headers.get("content-encoding", "identity").lower()
         if encoding != "identity":
-            raise ProtocolError("unsupported_encoding", "content-encoding %r" % encoding[:40])
+            raise ProtocolError("unsupported-encoding", "content-encoding %r" % encoding[:40])
         transfer = headers.get("transfer-encoding", "identity").lower()
         if transfer == "chunked":
             self._chunks = bytearray()
             self._state = _CHUNK_SIZE
             return
         if transfer != "identity":
-            raise ProtocolError("unsupported_encoding", "transfer-encoding %r" % transfer[:40])
+            raise ProtocolError("unsupported-encoding", "transfer-encoding %r" % transfer[:40])
         length = headers.get("content-length")
         if length is None:
             if isinstance(message, Response) and message.status not in (204, 304):
@@ -263,21 +263,21 @@ class _Parser:
         # Twelve digits are far beyond any bound and keep int() cheap.
         self._remaining = _decimal(length.encode(), 12)
         if self._remaining < 0:
-            raise ProtocolError("bad_content_length", "%r" % length[:40])
+            raise ProtocolError("bad-content-length", "%r" % length[:40])
         if self._remaining > self.max_body:
-            raise ProtocolError("body_too_large", "%d bytes, at most %d" % (self._remaining, self.max_body))
+            raise ProtocolError("body-too-large", "%d bytes, at most %d" % (self._remaining, self.max_body))
         self._state = _BODY
 
     def _step_chunk_size(self) -> bool:
-        line = self._line(MAX_CHUNK_LINE, "bad_chunk")
+        line = self._line(MAX_CHUNK_LINE, "bad-chunk")
         if line is None:
             return False
         digits = line.split(b";")[0].strip()
         size = _hexadecimal(digits, 8)
         if size < 0:
-            raise ProtocolError("bad_chunk", "size %r" % bytes(digits[:20]))
+            raise ProtocolError("bad-chunk", "size %r" % bytes(digits[:20]))
         if size + len(self._chunks) > self.max_body:
-            raise ProtocolError("body_too_large", "more than %d bytes" % self.max_body)
+            raise ProtocolError("body-too-large", "more than %d bytes" % self.max_body)
         self._remaining = size
         self._state = _CHUNK_DATA if size else _TRAILER
         return True
@@ -288,13 +288,13 @@ class _Parser:
             return False
         chunk = self._take(size + 2)
         if chunk[size:] != b"\r\n":
-            raise ProtocolError("bad_chunk", "no line end after %d bytes" % size)
+            raise ProtocolError("bad-chunk", "no line end after %d bytes" % size)
         self._chunks.extend(memoryview(chunk)[:size])
         self._state = _CHUNK_SIZE
         return True
 
     def _step_trailer(self, complete: "list[Request | Response]") -> bool:
-        line = self._line(self.max_header, "header_too_large")
+        line = self._line(self.max_header, "header-too-large")
         if line is None:
             return False
         if not line:
@@ -305,7 +305,7 @@ class _Parser:
         # Trailer fields carry nothing we need; their number is bounded as one header is.
         self._remaining += len(line) + 2
         if self._remaining > self.max_header:
-            raise ProtocolError("header_too_large", "trailer of more than %d bytes" % self.max_header)
+            raise ProtocolError("header-too-large", "trailer of more than %d bytes" % self.max_header)
         return True
 
 
@@ -332,7 +332,7 @@ class RequestParser(_Parser):
     def _start_line(self, line: str, headers: "dict[str, str]") -> Request:
         words = line.split()
         if len(words) != 3:
-            raise ProtocolError("bad_start_line", "%r" % line[:60])
+            raise ProtocolError("bad-start-line", "%r" % line[:60])
         keep = _keep_alive(words[2], headers)
         self._expected = headers.get("expect", "").lower() == "100-continue"
         return Request(words[0], words[1], headers, keep)
@@ -364,7 +364,7 @@ class ResponseParser(_Parser):
         words = line.split(None, 2)
         status = _decimal(words[1].encode(), 3) if len(words) > 1 else -1
         if status < 100:
-            raise ProtocolError("bad_start_line", "%r" % line[:60])
+            raise ProtocolError("bad-start-line", "%r" % line[:60])
         keep = _keep_alive(words[0], headers)
         return Response(status, words[2] if len(words) > 2 else "", headers, keep)
 
@@ -420,8 +420,8 @@ def _keep_alive(version: str, headers: "dict[str, str]") -> bool:
     if version == "HTTP/1.0":
         return "keep-alive" in connection
     if version.startswith("HTTP/"):
-        raise ProtocolError("unsupported_version", "%r" % version[:20])
-    raise ProtocolError("bad_start_line", "%r is no HTTP version" % version[:20])
+        raise ProtocolError("unsupported-version", "%r" % version[:20])
+    raise ProtocolError("bad-start-line", "%r is no HTTP version" % version[:20])
 
 
 def _text(data: bytes) -> str:

@@ -5,8 +5,8 @@ Runs on MicroPython. Emitting checks what it is given and raises `InvalidMessage
 makes one linear pass without recursion, holds no more than the document and its values, and raises
 `ProtocolError` with the byte offset and one of these reasons:
 
-    too_large  too_many_tags  too_deep  truncated  bad_encoding  control_character  forbidden_markup
-    bad_entity  unexpected_tag  unexpected_text  bad_int  bad_boolean  bad_double  bad_base64  bad_document
+    too-large  too-many-tags  too-deep  truncated  bad-encoding  control-character  forbidden-markup
+    bad-entity  unexpected-tag  unexpected-text  bad-int  bad-boolean  bad-double  bad-base64  bad-document
 
 There are no entities but the five of XML and character references; a document type, a comment, a CDATA
 section or a processing instruction is refused, for no ROS peer sends one. Element attributes are skipped
@@ -248,7 +248,7 @@ def parse_response(data: "Buffer") -> "Any":
         code = value.get("faultCode") if isinstance(value, dict) else None
         text = value.get("faultString") if isinstance(value, dict) else None
         if type(code) is not int or not isinstance(text, str):
-            raise ProtocolError("bad_document", "a fault without faultCode and faultString")
+            raise ProtocolError("bad-document", "a fault without faultCode and faultString")
         raise Fault(code, text)
     return value
 
@@ -261,7 +261,7 @@ def _split(data: "Buffer") -> "list[bytes]":
     """
     data = bytes(data)
     if len(data) > MAX_DOCUMENT:
-        raise ProtocolError("too_large", "%d bytes, at most %d" % (len(data), MAX_DOCUMENT))
+        raise ProtocolError("too-large", "%d bytes, at most %d" % (len(data), MAX_DOCUMENT))
     start = 3 if data.startswith(b"\xef\xbb\xbf") else 0
     while data[start : start + 1] in _SPACES:
         start += 1
@@ -276,16 +276,16 @@ def _split(data: "Buffer") -> "list[bytes]":
     data = to_utf8(data[start:] if start else data, declaration)
     control = find_control(data)
     if control >= 0:
-        raise ProtocolError("control_character", "0x%02x in the document" % control)
+        raise ProtocolError("control-character", "0x%02x in the document" % control)
     if data.count(b"<") > MAX_TAGS:
-        raise ProtocolError("too_many_tags", "more than %d" % MAX_TAGS)
+        raise ProtocolError("too-many-tags", "more than %d" % MAX_TAGS)
     if b"<!" in data or b"<?" in data:
-        raise ProtocolError("forbidden_markup", "a declaration, comment, CDATA section or instruction")
+        raise ProtocolError("forbidden-markup", "a declaration, comment, CDATA section or instruction")
     if b"\r" in data:
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     pieces = data.split(b"<")
     if pieces[0].strip():
-        raise ProtocolError("unexpected_text", "at byte %d: text before the root element" % start)
+        raise ProtocolError("unexpected-text", "at byte %d: text before the root element" % start)
     pieces[0] = prefix + pieces[0]
     return pieces
 
@@ -326,7 +326,7 @@ def _expect(pieces: "list[bytes]", at: int, tag: bytes) -> int:
     if pieces[at] != tag:
         text = _text(pieces, at, tag[:-1])
         if text and text.strip():
-            raise _fail(pieces, at, "unexpected_text", "%r after <%s" % (text[:20], tag.decode()))
+            raise _fail(pieces, at, "unexpected-text", "%r after <%s" % (text[:20], tag.decode()))
     return at + 1
 
 
@@ -334,7 +334,7 @@ def _text(pieces: "list[bytes]", at: int, tag: bytes) -> bytes:
     """The text after the tag at `at`, which must be `tag`."""
     name, text = _open(pieces[at])
     if name != tag:
-        raise _fail(pieces, at, "unexpected_tag", "expected <%s>, got <%s>" % (tag.decode(), _printed(name)))
+        raise _fail(pieces, at, "unexpected-tag", "expected <%s>, got <%s>" % (tag.decode(), _printed(name)))
     return text
 
 
@@ -344,7 +344,7 @@ def _printed(name: bytes) -> str:
 
 def _end(pieces: "list[bytes]", at: int) -> None:
     if at != len(pieces):
-        raise _fail(pieces, at, "unexpected_tag", "something after the root element")
+        raise _fail(pieces, at, "unexpected-tag", "something after the root element")
 
 
 def _value(pieces: "list[bytes]", at: int) -> "tuple[Any, int]":
@@ -366,7 +366,7 @@ def _value(pieces: "list[bytes]", at: int) -> "tuple[Any, int]":
             value, at, opened, first = _begin(pieces, at)
             if opened:
                 if len(outer) >= MAX_DEPTH:
-                    raise _fail(pieces, at, "too_deep", "more than %d arrays and structs nested" % MAX_DEPTH)
+                    raise _fail(pieces, at, "too-deep", "more than %d arrays and structs nested" % MAX_DEPTH)
                 outer.append((container, key))
                 container = value
                 key = first
@@ -416,12 +416,12 @@ def _begin(pieces: "list[bytes]", at: int) -> "tuple[Any, int, bool, str]":
     if name == b"value/":
         return "", _expect(pieces, at, b"value/>"), False, ""
     if name != b"value":
-        raise _fail(pieces, at, "unexpected_tag", "expected <value>, got <%s>" % _printed(name))
+        raise _fail(pieces, at, "unexpected-tag", "expected <value>, got <%s>" % _printed(name))
     tag, content = _open(pieces[at + 1])
     if tag == b"/value":
         return _string(pieces, at, text), _expect(pieces, at + 1, b"/value>"), False, ""
     if text.strip():
-        raise _fail(pieces, at, "unexpected_text", "text beside a typed value")
+        raise _fail(pieces, at, "unexpected-text", "text beside a typed value")
     at += 1
     value: Any
     if tag == b"array":
@@ -447,7 +447,7 @@ def _begin(pieces: "list[bytes]", at: int) -> "tuple[Any, int, bool, str]":
     else:
         read = _READERS.get(tag)
         if read is None:
-            raise _fail(pieces, at, "unexpected_tag", "<%s> is no type" % _printed(tag))
+            raise _fail(pieces, at, "unexpected-tag", "<%s> is no type" % _printed(tag))
         value, at = _typed(pieces, at, tag, content, read)
         return value, at, False, ""
     return value, _expect(pieces, at, b"/value>"), False, ""
@@ -487,7 +487,7 @@ def _read_int(text: bytes) -> int:
         value = int(text)
         if -0x8000000000000000 <= value <= 0x7FFFFFFFFFFFFFFF:
             return value
-    raise ProtocolError("bad_int", "%r is no integer of 64 bits" % text[:24])
+    raise ProtocolError("bad-int", "%r is no integer of 64 bits" % text[:24])
 
 
 def _read_boolean(text: bytes) -> bool:
@@ -496,7 +496,7 @@ def _read_boolean(text: bytes) -> bool:
         return True
     if text == b"0":
         return False
-    raise ProtocolError("bad_boolean", "%r is neither 0 nor 1" % text[:24])
+    raise ProtocolError("bad-boolean", "%r is neither 0 nor 1" % text[:24])
 
 
 def _read_double(text: bytes) -> float:
@@ -507,14 +507,14 @@ def _read_double(text: bytes) -> float:
             return float(text)
     except ValueError:
         pass
-    raise ProtocolError("bad_double", "%r is no number" % text[:24])
+    raise ProtocolError("bad-double", "%r is no number" % text[:24])
 
 
 def _read_base64(text: bytes) -> bytes:
     try:
         return binascii.a2b_base64(text)
     except ValueError:
-        raise ProtocolError("bad_base64", "%d characters that are no base64" % len(text)) from None
+        raise ProtocolError("bad-base64", "%d characters that are no base64" % len(text)) from None
 
 
 def _read_datetime(text: bytes) -> DateTime:
@@ -523,7 +523,7 @@ def _read_datetime(text: bytes) -> DateTime:
 
 def _read_nil(text: bytes) -> None:
     if text.strip():
-        raise ProtocolError("unexpected_text", "text inside nil")
+        raise ProtocolError("unexpected-text", "text inside nil")
 
 
 _READERS: "dict[bytes, Callable[[bytes], Any]]" = {

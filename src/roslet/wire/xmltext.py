@@ -57,7 +57,7 @@ def unescape(text: str) -> str:
         if char is None:
             char = _referred(name)
         if not char or not found:
-            raise ProtocolError("bad_entity", "&%s" % part[:12])
+            raise ProtocolError("bad-entity", "&%s" % part[:12])
         out.append(char)
         out.append(rest)
     return "".join(out)
@@ -86,8 +86,8 @@ def to_utf8(data: bytes, declaration: bytes) -> bytes:
         try:
             data.decode()
         except UnicodeError:
-            raise ProtocolError("bad_encoding", "the document is not UTF-8") from None
+            raise ProtocolError("bad-encoding", "the document is not UTF-8") from None
         return data
     if name in (b"iso-8859-1", b"latin-1", b"latin1"):
         return "".join([chr(byte) for byte in data]).encode()
-    raise ProtocolError("bad_encoding", "encoding %r" % name[:40])
+    raise ProtocolError("bad-encoding", "encoding %r" % name[:40])

@@ -41,7 +41,7 @@ def exchange(client: RpcClient, server: RpcServer, now: float, step: int = 1 << 
 
 
 def events(client: RpcClient) -> "list[Any]":
-    found = []
+    found: list[Any] = []
     while True:
         event = client.next_event()
         if event is None:
@@ -171,7 +171,7 @@ def test_a_call_that_is_no_xml_rpc_fails_alone() -> None:
     server.receive_data(bad + post("add", ["/n", 1]), 0.0)
     rpc.answer_calls(server, METHODS, 0.0)
     responses = http.ResponseParser().feed(server.data_to_send())
-    with pytest.raises(Fault, match="unexpected_tag"):
+    with pytest.raises(Fault, match="unexpected-tag"):
         xmlrpc.parse_response(responses[0].body)
     assert xmlrpc.parse_response(responses[1].body) == [1, "/n", 1]
     assert not server.closing
@@ -180,12 +180,12 @@ def test_a_call_that_is_no_xml_rpc_fails_alone() -> None:
 @pytest.mark.parametrize(
     ("data", "status", "reason"),
     [
-        (b"GET / HTTP/1.1\r\nHost: x\r\n\r\n", 405, "not_post"),
-        (b"\x00\x01\x02 garbage\r\n\r\n", 400, "bad_start_line"),
-        (b"POST / HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n", 413, "body_too_large"),
-        (b"POST / HTTP/3.0\r\n\r\n", 505, "unsupported_version"),
-        (b"A" * (http.MAX_HEADER + 1), 431, "header_too_large"),
-        (b"POST / HTTP/1.1\r\nTransfer-Encoding: gzip\r\n\r\n", 501, "unsupported_encoding"),
+        (b"GET / HTTP/1.1\r\nHost: x\r\n\r\n", 405, "not-post"),
+        (b"\x00\x01\x02 garbage\r\n\r\n", 400, "bad-start-line"),
+        (b"POST / HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n", 413, "body-too-large"),
+        (b"POST / HTTP/3.0\r\n\r\n", 505, "unsupported-version"),
+        (b"A" * (http.MAX_HEADER + 1), 431, "header-too-large"),
+        (b"POST / HTTP/1.1\r\nTransfer-Encoding: gzip\r\n\r\n", 501, "unsupported-encoding"),
     ],
 )
 def test_what_is_no_request_is_answered_and_ends_the_connection(
@@ -216,7 +216,7 @@ def test_calls_before_a_fault_in_the_stream_are_answered_first() -> None:
 def test_more_calls_ahead_of_the_answers_than_the_bound_end_the_connection() -> None:
     server = RpcServer(0.0)
     server.receive_data(post("add", ["/n", 1]) * (rpc.MAX_PIPELINED + 2), 0.0)
-    assert server.close_reason == "too_many_requests"
+    assert server.close_reason == "too-many-requests"
 
 
 @pytest.mark.parametrize(
@@ -245,7 +245,7 @@ def test_a_client_that_half_closes_still_gets_its_answer() -> None:
     assert not server.closing
     rpc.answer_calls(server, METHODS, 0.0)
     assert answers(server.data_to_send()) == [[1, "/n", 1]]
-    assert server.close_reason == "peer_closed"
+    assert server.close_reason == "peer-closed"
 
 
 def test_a_silent_connection_is_closed_after_its_time() -> None:
@@ -269,7 +269,7 @@ def test_a_trickled_request_does_not_extend_its_time() -> None:
         server.receive_data(data[at : at + 1], float(at))
     assert server.deadline() == rpc.REQUEST_TIMEOUT
     server.handle_deadline(rpc.REQUEST_TIMEOUT)
-    assert server.close_reason == "slow_request"
+    assert server.close_reason == "slow-request"
     (response,) = http.ResponseParser().feed(server.data_to_send())
     assert response.status == 408
 
@@ -402,10 +402,10 @@ def test_an_unused_connection_is_closed_by_the_client() -> None:
 @pytest.mark.parametrize(
     ("data", "kind", "text"),
     [
-        (b"HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\n\r\n", ProtocolError, "http_status"),
-        (b"HTTP/1.1 200 OK\r\nContent-Length: 3\r\n\r\n<a>", ProtocolError, "unexpected_tag"),
-        (b"SSH-2.0-OpenSSH\r\n\r\n", ProtocolError, "bad_start_line"),
-        (b"HTTP/1.1 200 OK\r\nContent-Length: 99999999999\r\n\r\n", ProtocolError, "body_too_large"),
+        (b"HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\n\r\n", ProtocolError, "http-status"),
+        (b"HTTP/1.1 200 OK\r\nContent-Length: 3\r\n\r\n<a>", ProtocolError, "unexpected-tag"),
+        (b"SSH-2.0-OpenSSH\r\n\r\n", ProtocolError, "bad-start-line"),
+        (b"HTTP/1.1 200 OK\r\nContent-Length: 99999999999\r\n\r\n", ProtocolError, "body-too-large"),
     ],
 )
 def test_an_answer_that_is_none_fails_the_call(data: bytes, kind: type, text: str) -> None:

@@ -5,7 +5,7 @@ one timer from `deadline`. Events are facts: `CallReceived`, `ReplyReceived`, `C
 
 What ends a server connection, and is its `close_reason`: a reason of `wire.http`, or
 
-    idle  slow_request  too_many_requests  not_post  peer_closed  connection_close
+    idle  slow-request  too-many-requests  not-post  peer-closed  connection-close
 """
 
 from roslet.errors import CallTimeout, Fault, InvalidMessage, ProtocolError, RosletError, Unreachable
@@ -181,7 +181,7 @@ class RpcServer:
             self._close("idle")
         else:
             self._output.append(http.emit_error(408))
-            self._close("slow_request")
+            self._close("slow-request")
 
     def _answer(self, call_id: int, body: bytes, now: float) -> None:
         if not self._current or call_id != self._current or self.close_reason:
@@ -190,7 +190,7 @@ class RpcServer:
         self._event = None
         self._output.append(http.emit_response(body, self._keep_alive))
         if not self._keep_alive:
-            self._close("connection_close")
+            self._close("connection-close")
             return
         self._advance()
         if self._deadline is not None and now > 0.0:
@@ -203,17 +203,17 @@ class RpcServer:
         if self.close_reason:
             return
         if len(self._requests) > MAX_PIPELINED:
-            self._refuse(503, "too_many_requests")
+            self._refuse(503, "too-many-requests")
         elif not self._current and self._parser.error is not None:
             reason = self._parser.error.reason
             self._refuse(http.STATUS_OF_REASON.get(reason, 400), reason)
         elif self._ended and not self._current:
-            self._close("peer_closed")
+            self._close("peer-closed")
 
     def _begin(self, request: "http.Request") -> None:
         self._keep_alive = request.keep_alive
         if request.method != "POST":
-            self._refuse(405, "not_post")
+            self._refuse(405, "not-post")
             return
         self._current = self._next_id
         self._next_id += 1
@@ -228,7 +228,7 @@ class RpcServer:
             )
             self._current = 0
             if not self._keep_alive:
-                self._close("connection_close")
+                self._close("connection-close")
             return
         self._event = CallReceived(self._current, method, params)
 
@@ -481,7 +481,7 @@ class RpcClient:
     def _outcome(self, call: _Call, response: "http.Response") -> "ReplyReceived | CallFailed":
         if response.status != 200:
             text = "%s answered %d %s" % (self._authority, response.status, response.reason[:80])
-            return CallFailed(call.call_id, ProtocolError("http_status", text))
+            return CallFailed(call.call_id, ProtocolError("http-status", text))
         try:
             return ReplyReceived(call.call_id, xmlrpc.parse_response(response.body))
         except (ProtocolError, Fault) as error:
@@ -491,10 +491,10 @@ class RpcClient:
 def unpack_reply(reply: "Any") -> "Any":
     """The value of a ROS reply `[code, message, value]`.
 
-    Raises Fault where the code is not 1 (success), ProtocolError("bad_reply") where it is no such triple.
+    Raises Fault where the code is not 1 (success), ProtocolError("bad-reply") where it is no such triple.
     """
     if not isinstance(reply, (list, tuple)) or len(reply) != 3 or type(reply[0]) is not int:
-        raise ProtocolError("bad_reply", "expected [code, message, value], got %s" % repr(reply)[:80])
+        raise ProtocolError("bad-reply", "expected [code, message, value], got %s" % repr(reply)[:80])
     if reply[0] != 1:
         raise Fault(reply[0], str(reply[1]))
     return reply[2]
