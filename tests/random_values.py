@@ -94,7 +94,9 @@ class Values:
             if self.style == "maximal":
                 return float("inf") if self.random.random() < 0.2 else -1.5
             value = self.random.uniform(-1e6, 1e6)
-            return float(struct.unpack("<f", struct.pack("<f", value))[0]) if primitive == "float32" else value
+            return (
+                float(struct.unpack("<f", struct.pack("<f", value))[0]) if primitive == "float32" else value
+            )
         low, high = LIMITS[primitive]
         if self.style == "empty":
             return 0
@@ -110,7 +112,9 @@ def fill(kind: type[MessageBase], fields: dict[str, Any]) -> MessageBase:
         spec = {row[0]: row for row in kind._spec}[attribute(name)]
         base = spec[1]
         array = spec[2] != 0
-        setattr(message, attribute(name), [_filled(base, one) for one in value] if array else _filled(base, value))
+        setattr(
+            message, attribute(name), [_filled(base, one) for one in value] if array else _filled(base, value)
+        )
     return message
 
 

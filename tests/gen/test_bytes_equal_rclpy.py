@@ -1,7 +1,8 @@
 """Every ROS 2 type of the wheels, byte for byte as rclpy with Fast DDS has it, padding apart.
 
-Fast DDS leaves padding as it finds it in memory, and rclpy returns as many bytes as it estimated, which may be more
-than it wrote; so the comparison masks padding (what it masks must be zero in our bytes) and ends with our bytes.
+Fast DDS leaves padding as it finds it in memory, and rclpy returns as many bytes as it estimated, which may
+be more than it wrote; so the comparison masks padding (what it masks must be zero in our bytes) and ends with
+our bytes.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ A time or duration is {"secs", "nsecs"}, an array a list, a uint8 array a list o
 `pkg/NameRequest`.
 """
 
+import contextlib
 import importlib
 import io
 import json
@@ -44,10 +45,8 @@ def find_class(name):
         package, short = name.split("/")
         found = None
         for module in ("msg", "srv"):
-            try:
+            with contextlib.suppress(ImportError):
                 found = found or getattr(importlib.import_module(package + "." + module), short, None)
-            except ImportError:
-                pass
         if found is None:
             found = genpy.dynamic.generate_dynamic(name, definition(name))[name]
         CLASSES[name] = found
@@ -56,7 +55,7 @@ def find_class(name):
 
 def build(kind, fields):
     message = kind()
-    for name, text in zip(message.__slots__, message._slot_types):
+    for name, text in zip(message.__slots__, message._slot_types, strict=True):
         value = fields[name]
         base, bracket, _ = text.partition("[")
         if base in ("char", "uint8") and bracket:
@@ -82,7 +81,8 @@ def build_one(base, holder, value):
 
 
 def nested_class(holder, base):
-    """The class that the generated module of `holder` itself uses, so that dynamic types nest dynamic types."""
+    """The class that the generated module of `holder` itself uses, so that dynamic types nest dynamic
+    types."""
     module = sys.modules[holder.__module__]
     dynamic = getattr(module, "_" + base.replace("/", "__"), None)
     return dynamic if dynamic is not None else find_class(base)

@@ -1,5 +1,5 @@
-"""What ROS 2's own Python and Fast DDS make of values. Runs under the Python of the ROS 2 wheels, knows nothing of
-roslet.
+"""What ROS 2's own Python and Fast DDS make of values. Runs under the Python of the ROS 2 wheels, knows
+nothing of roslet.
 
 Each line of standard input is JSON: {"type": "pkg/kind/Name", "value": fields, "data": hex}. The answer, one line:
 {"data": what rclpy serialises of the value, in hex, "value": what it reads from the data given} or {"error": text}.
@@ -20,7 +20,9 @@ def find_class(name):
     for part in short.split("_")[1:]:
         inner = getattr(found, part, None)
         if inner is None:
-            inner = getattr(found.Impl, {"SendGoal": "SendGoalService", "GetResult": "GetResultService"}.get(part, part))
+            inner = getattr(
+                found.Impl, {"SendGoal": "SendGoalService", "GetResult": "GetResultService"}.get(part, part)
+            )
         found = inner
     return found
 
@@ -31,7 +33,7 @@ def class_of(kind):
 
 def build(kind, fields):
     message = kind()
-    for slot, slot_type in zip(message.__slots__, kind.SLOT_TYPES):
+    for slot, slot_type in zip(message.__slots__, kind.SLOT_TYPES, strict=True):
         name = slot.lstrip("_")
         if name in fields:
             setattr(message, name, build_one(slot_type, fields[name]))
@@ -40,8 +42,7 @@ def build(kind, fields):
 
 def build_one(kind, value):
     if isinstance(kind, AbstractNestedType):
-        made = [build_one(kind.value_type, element) for element in value]
-        return made
+        return [build_one(kind.value_type, element) for element in value]
     if isinstance(kind, NamespacedType):
         return build(class_of(kind), value)
     if isinstance(kind, BasicType) and kind.typename == "octet":
@@ -61,7 +62,7 @@ def plain(kind, value):
 
 def plain_message(message):
     found = {}
-    for slot, slot_type in zip(message.__slots__, message.SLOT_TYPES):
+    for slot, slot_type in zip(message.__slots__, message.SLOT_TYPES, strict=True):
         name = slot.lstrip("_")
         if name != "check_fields":
             found[name] = plain(slot_type, getattr(message, name))

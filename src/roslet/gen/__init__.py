@@ -1,1 +1,2 @@
-"""Backends that spell what `layout` decided. Imports `idl` and `layout`; the code it makes imports `wire` only."""
+"""Backends that spell what `layout` decided. Imports `idl` and `layout`; the code it makes imports `wire`
+only."""

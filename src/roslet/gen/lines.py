@@ -5,9 +5,9 @@ from __future__ import annotations
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import TypeAlias, Union
+    from typing import TypeAlias
 
-    Block: TypeAlias = Iterable[Union[str, "Block"]]
+    Block: TypeAlias = Iterable[str | "Block"]
 else:
     Block = object
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from roslet.gen.lines import render
 from roslet.gen.python_codec import Deserializer, Serializer
 from roslet.gen.python_names import attribute, class_reference
+from roslet.idl.records import Service
 from roslet.layout import PRIMITIVE_SIZE
 from roslet.wire.cursor import BOUNDED, FIXED, SINGLE, UNBOUNDED
 
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from roslet.gen.lines import Block
-    from roslet.idl.records import Field, FieldType, Message, TypeName
+    from roslet.idl.records import Action, Field, FieldType, Message, TypeName
     from roslet.layout import Layout
 
 _KINDS = {"fixed": FIXED, "bounded": BOUNDED, "unbounded": UNBOUNDED}
@@ -78,9 +79,7 @@ def initializer(message: Message) -> Method:
     return Method([head, body or ["pass"]], globals_, references)
 
 
-def _default(
-    field: Field, references: dict[str, object], globals_: dict[str, str]
-) -> tuple[str, str | None]:
+def _default(field: Field, references: dict[str, object], globals_: dict[str, str]) -> tuple[str, str | None]:
     """A parameter's default, and the expression that makes the field's value if that default is None."""
     kind = field.type
     primitive = kind.primitive
@@ -144,6 +143,33 @@ def fields_and_types(message: Message) -> tuple[tuple[str, str], ...]:
             text = kind.message.text(message.dialect) + text[len(kind.spelled) :]
         rows.append((field.name, text))
     return tuple(rows)
+
+
+def has_header(message: Message) -> bool:
+    """Whether a ROS 1 message begins with a std_msgs/Header named header."""
+    first = message.fields[0] if message.fields else None
+    return first is not None and first.name == "header" and str(first.type.message) == "std_msgs/msg/Header"
+
+
+def parts(interface: Service | Action) -> dict[str, TypeName]:
+    """The attributes of a service's or an action's class: what it is made of and what is derived of it."""
+    if isinstance(interface, Service):
+        found = {"Request": interface.request.name, "Response": interface.response.name}
+        if interface.event is not None:
+            found["Event"] = interface.event.name
+        return found
+    found = {
+        "Goal": interface.goal.name,
+        "Result": interface.result.name,
+        "Feedback": interface.feedback.name,
+    }
+    own = interface.name.name
+    derived = [service.name for service in interface.services]
+    derived += [message.name for message in interface.messages]
+    for part in derived:
+        short = part.name[len(own) :].lstrip("_") if part.name.startswith(own) else part.name
+        found.setdefault(short, part)
+    return found
 
 
 def slots(message: Message) -> tuple[str, ...]:

@@ -1,12 +1,13 @@
 """Python source of the serialiser and deserialiser of one message, spelled from its layout.
 
-One `struct` call a run; nested messages inlined; a loop for an array of strings or messages. Positions are kept as a
-variable and a constant, so that consecutive runs and payloads cost one addition. All names that start with an underscore
-are globals of the generated code (`globals_` says how each is made); locals have none.
+One `struct` call a run; nested messages inlined; a loop for an array of strings or messages. Positions are
+kept as a variable and a constant, so that consecutive runs and payloads cost one addition. All names that
+start with an underscore are globals of the generated code (`globals_` says how each is made); locals have
+none.
 
-What can go wrong raises one of `primitives.FAILURES` and the whole message is done again by the field table, which
-knows exactly what is wrong. In particular a deserialiser does not check every string: what runs past the end fails at
-the next run or at the comparison with the end. It checks every count that drives a loop.
+What can go wrong raises one of `primitives.FAILURES` and the whole message is done again by the field table,
+which knows exactly what is wrong. In particular a deserialiser does not check every string: what runs past
+the end fails at the next run or at the comparison with the end. It checks every count that drives a loop.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from roslet.wire.message import GATHER_MINIMUM
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Generator, Iterator
 
     from roslet.gen.lines import Block
     from roslet.layout import Layout, Slot
@@ -28,7 +29,8 @@ if TYPE_CHECKING:
 # The encapsulation header of little-endian CDR without options, 00 01 00 00, as a little-endian number.
 _ENCAPSULATION = 256
 
-# A gathered payload takes no room in the buffer; the origin of alignment moves so that it is counted nevertheless.
+# A gathered payload takes no room in the buffer; the origin of alignment moves so that it is counted
+# nevertheless.
 _GATHERED = "base -= o + n - e"
 
 
@@ -89,7 +91,9 @@ class _Form:
             self.end = offset
 
     def __str__(self) -> str:
-        return "<" + "".join(["%d%s" % part if part[0] != 1 or part[1] == "s" else part[1] for part in self.parts])
+        return "<" + "".join(
+            ["%d%s" % part if part[0] != 1 or part[1] == "s" else part[1] for part in self.parts]
+        )
 
 
 class _Codec:
@@ -211,7 +215,7 @@ class Serializer(_Codec):
 
     def run(
         self, run: Run, after: Operation | None, holders: dict[Path, str], header: bool, folded: bool
-    ) -> Iterator[str]:
+    ) -> Iterator[str | Block]:
         form = _Form()
         arguments: list[str] = []
         if header:
@@ -268,7 +272,9 @@ class Serializer(_Codec):
         yield "if len(%s) != %d:" % (name, slot.size)
         yield ["raise ValueError"]
 
-    def prepare(self, operation: Operation | None, holders: dict[Path, str]) -> Iterator[str | Block]:
+    def prepare(
+        self, operation: Operation | None, holders: dict[Path, str]
+    ) -> Generator[str | Block, None, str]:
         """Set `n` (and `data`) for the variable operation that follows; returns the count's expression."""
         if isinstance(operation, Text):
             value = self.value(operation.path, holders)
@@ -404,8 +410,8 @@ class Deserializer(_Codec):
     prefix = "unpack"
 
     def source(self) -> Block:
-        """The lines of the method, without its `classmethod` decorator. Afterwards `globals_` and `references` say what
-        they need."""
+        """The lines of the method, without its `classmethod` decorator. Afterwards `globals_` and
+        `references` say what they need."""
         self.variable = "start"
         body = list(self.body())
         yield "def deserialize_from(cls, buffer, start, end):"

@@ -8,8 +8,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from roslet.idl.records import TypeName
 
-# Names that a field may not have as they are: Python's keywords, the methods of `roslet.wire.message.Message`, and the
-# first parameter of a method.
+# Names that a field may not have as they are: Python's keywords, the methods of
+# `roslet.wire.message.Message`, and the first parameter of a method.
 RESERVED = frozenset(
     [
         *kwlist,
@@ -36,8 +36,6 @@ def class_reference(name: TypeName | str) -> str:
     return "_%s_%s" % (name.package, name.name)
 
 
-
-
 class Locals:
     """Unique names for a function's local variables."""
 
@@ -45,7 +43,9 @@ class Locals:
         self.used = set(RESERVED)
         self.used.update(["buffer", "offset", "parts", "cls", "start", "end", "base", "error", "message"])
         self.used.update(["o", "e", "n", "p", "data", "kind"])
-        self.used.update(["len", "range", "type", "str", "bytes", "ValueError", "int", "list", "True", "False"])
+        self.used.update(
+            ["len", "range", "type", "str", "bytes", "ValueError", "int", "list", "True", "False"]
+        )
 
     def name(self, wish: str) -> str:
         """`wish`, or `wish` with a number behind it if it is taken."""

@@ -1,8 +1,8 @@
 """Message classes at run time: from a type's name to a class, with nothing compiled before it is used.
 
-A class is made from its definition at once, which is cheap. Its methods are descriptors that compile the real method on
-first use and put it in their place: a publisher never pays for a deserialiser, and a nested class, whose code is inlined
-in the classes that hold it, mostly pays for none.
+A class is made from its definition at once, which is cheap. Its methods are descriptors that compile the real
+method on first use and put it in their place: a publisher never pays for a deserialiser, and a nested class,
+whose code is inlined in the classes that hold it, mostly pays for none.
 """
 
 from __future__ import annotations
@@ -40,13 +40,14 @@ def registry(dialect: Dialect) -> Registry:
 
 
 def message_class(dialect: Dialect, name: TypeName | str) -> type[Message]:
-    """The class of a message; the same object every time. Raises UnknownType, DefinitionError, RecursiveType."""
+    """The class of a message; the same object every time. Raises UnknownType, DefinitionError,
+    RecursiveType."""
     key = (dialect, str(name))
     made = _classes.get(key)
     if made is None:
         message = registry(dialect).message(name)
         made = _classes[key] = _message_class(message)
-    return made  # type: ignore[no-any-return]
+    return made
 
 
 def service_class(dialect: Dialect, name: TypeName | str) -> type[Service]:
@@ -60,7 +61,8 @@ def service_class(dialect: Dialect, name: TypeName | str) -> type[Service]:
 
 
 def action_class(dialect: Dialect, name: TypeName | str) -> type[Action]:
-    """The class of an action, with `Goal`, `Result`, `Feedback` and what is derived. Raises as `message_class`."""
+    """The class of an action, with `Goal`, `Result`, `Feedback` and what is derived. Raises as
+    `message_class`."""
     key = (dialect, str(name) + "#action")
     made = _classes.get(key)
     if made is None:
@@ -79,7 +81,8 @@ def interface_class(dialect: Dialect, name: TypeName | str) -> Any:
 
 
 def for_dialect(dialect: Dialect, kind: Any) -> Any:
-    """The class of the same name in `dialect`: `kind` itself, or its counterpart where it is the other dialect's.
+    """The class of the same name in `dialect`: `kind` itself, or its counterpart where it is the other
+    dialect's.
 
     Raises UnknownType where the dialect has none.
     """
@@ -95,10 +98,11 @@ def for_dialect(dialect: Dialect, kind: Any) -> Any:
 def load(path: str | PathLike[str], dialect: Dialect | None = None) -> Types:
     """Load the definitions at `path` (a package, a workspace or its `src`, a directory of definition files).
 
-    They come before all others of their names in this process, in both dialects; each is parsed when it is asked for.
-    What is returned has the packages as attributes (`types.my_msgs.msg.Foo`), with the classes of `dialect`: by default
-    that of the package's build tool (catkin: ROS 1), ROS 2 where none is named. A node takes either's class and uses
-    that of its own network. Raises DefinitionError where there is no definition.
+    They come before all others of their names in this process, in both dialects; each is parsed when it is
+    asked for. What is returned has the packages as attributes (`types.my_msgs.msg.Foo`), with the classes of
+    `dialect`: by default that of the package's build tool (catkin: ROS 1), ROS 2 where none is named. A node
+    takes either's class and uses that of its own network. Raises DefinitionError where there is no
+    definition.
     """
     names: list[TypeName] = []
     both: tuple[Dialect, ...] = ("ros1", "ros2")
@@ -109,10 +113,11 @@ def load(path: str | PathLike[str], dialect: Dialect | None = None) -> Types:
 
 
 def message_class_of(name: str, definition: str) -> type[Message]:
-    """The ROS 1 class of a message whose definition a peer sent (`message_definition` in a connection header).
+    """The ROS 1 class of a message whose definition a peer sent (`message_definition` in a connection
+    header).
 
-    The definition, and those of the nested types with it, come before all others of their names in this process from
-    then on. Raises DefinitionError where the text is wrong or incomplete.
+    The definition, and those of the nested types with it, come before all others of their names in this
+    process from then on. Raises DefinitionError where the text is wrong or incomplete.
     """
     _forget("ros1", registry("ros1").load_full_text(name, definition))
     return message_class("ros1", name)
@@ -135,7 +140,7 @@ def _forget(dialect: Dialect, names: list[TypeName]) -> None:
     while True:
         stale = []
         for key, made in _classes.items():
-            if key[0] == dialect and key[1] not in gone and any([part in gone for part in _parts_of(made)]):
+            if key[0] == dialect and key[1] not in gone and any(part in gone for part in _parts_of(made)):
                 stale.append(key[1])
         if not stale:
             break
@@ -357,10 +362,7 @@ def _message_class(message: records.Message) -> type[Message]:
     if dialect == "ros1":
         lazy.append(_Fact("_md5sum", builder.md5sum))
         lazy.append(_Fact("_full_text", builder.full_text))
-        first = message.fields[0] if message.fields else None
-        body["_has_header"] = (
-            first is not None and first.name == "header" and str(first.type.message) == "std_msgs/msg/Header"
-        )
+        body["_has_header"] = python.has_header(message)
     else:
         lazy.append(_Fact("_type_hash", builder.type_hash))
     for constant in message.constants:
@@ -382,12 +384,10 @@ def _service_class(service: records.Service) -> type[Service]:
         "__qualname__": name.name,
         "__doc__": "The service %s of %s" % (name.text(dialect), "ROS 1" if dialect == "ros1" else "ROS 2"),
         "_type": name.text(dialect),
-        "Request": message_class(dialect, service.request.name),
-        "Response": message_class(dialect, service.response.name),
     }
-    if service.event is not None:
-        body["Event"] = message_class(dialect, service.event.name)
-    return _with_hashes(dialect, name, Service, body)
+    for attribute, part in python.parts(service).items():
+        body[attribute] = message_class(dialect, part)
+    return _with_hashes(dialect, name, Service, body)  # type: ignore[no-any-return]
 
 
 def _with_hashes(dialect: Dialect, name: TypeName, base: type, body: dict[str, Any]) -> Any:
@@ -416,23 +416,14 @@ def _action_class(action: records.Action) -> type[Action]:
         "__qualname__": name.name,
         "__doc__": "The action %s of %s" % (name.text(dialect), "ROS 1" if dialect == "ros1" else "ROS 2"),
         "_type": name.text(dialect),
-        "Goal": message_class(dialect, action.goal.name),
-        "Result": message_class(dialect, action.result.name),
-        "Feedback": message_class(dialect, action.feedback.name),
     }
-    for service in action.services:
-        body[_short(service.name.name, name.name)] = service_class(dialect, service.name)
-    for message in action.messages:
-        body.setdefault(_short(message.name.name, name.name), message_class(dialect, message.name))
+    services = {service.name for service in action.services}
+    for attribute, part in python.parts(action).items():
+        make = service_class if part in services else message_class
+        body[attribute] = make(dialect, part)
     if dialect == "ros1":
-        made = type(name.name, (Action,), body)
-        return made
+        return type(name.name, (Action,), body)
     return _with_hashes(dialect, name, Action, body)  # type: ignore[no-any-return]
-
-
-def _short(derived: str, action: str) -> str:
-    """`SendGoal` of `Fibonacci_SendGoal`, `ActionGoal` of `FibonacciActionGoal`."""
-    return derived[len(action) :].lstrip("_") if derived.startswith(action) else derived
 
 
 __all__ = [

@@ -1,8 +1,8 @@
 """The layout pass: definition records to operations, following alignment as far as it can be known.
 
-What is known of a position is a pair (modulus, residue): the position is `residue` modulo `modulus`. It starts as
-(8, 0); a string makes it (1, 0); an alignment at run time makes it (n, 0); a loop keeps what holds before and after
-its body. ROS 1 aligns nothing, which is the same pass with a largest alignment of 1.
+What is known of a position is a pair (modulus, residue): the position is `residue` modulo `modulus`. It
+starts as (8, 0); a string makes it (1, 0); an alignment at run time makes it (n, 0); a loop keeps what holds
+before and after its body. ROS 1 aligns nothing, which is the same pass with a largest alignment of 1.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 def layout(message: Message, resolve: Callable[[TypeName], Message], encoding: Encoding) -> Layout:
     """The layout of `message` in `encoding` ("ros1" or "cdr", which is XCDR version 1 of either byte order).
 
-    `resolve` gives the definition of a nested type; the types must not be recursive (`idl.Registry` sees to that).
+    `resolve` gives the definition of a nested type; the types must not be recursive (`idl.Registry` sees to
+    that).
     """
     flatten = _Flatten(resolve, encoding, (PERIOD, 0))
     flatten.message(message, ())

@@ -1,8 +1,9 @@
 """The operations of which a layout consists. Immutable records, neutral of any backend.
 
-A message is a list of operations, carried out in order at a moving position. Nested messages that are no arrays are
-flattened into the list of the message that holds them; a *path* (a tuple of field names, relative to the message or to
-the element of the innermost `Sequence`) says which value an operation moves. The empty path is the element itself.
+A message is a list of operations, carried out in order at a moving position. Nested messages that are no
+arrays are flattened into the list of the message that holds them; a *path* (a tuple of field names, relative
+to the message or to the element of the innermost `Sequence`) says which value an operation moves. The empty
+path is the element itself.
 
     Run       bytes whose offsets are known: scalars, fixed numeric arrays, element counts, padding
     Text      the payload of a string; its length was in the run before
@@ -10,9 +11,9 @@ the element of the innermost `Sequence`) says which value an operation moves. Th
     Numbers   the payload of a variable numeric array; its count was in the run before
     Sequence  an array of strings or messages: a list of operations that is repeated
 
-`align` of an operation is what has to be done at run time before it: move the position up to a multiple of `align`,
-counted from the start of the message's body (in CDR: after the encapsulation header). Where the layout could work the
-padding out, `align` is 1 and the padding is inside a run.
+`align` of an operation is what has to be done at run time before it: move the position up to a multiple of
+`align`, counted from the start of the message's body (in CDR: after the encapsulation header). Where the
+layout could work the padding out, `align` is 1 and the padding is inside a run.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from roslet.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Literal, TypeAlias, Union
+    from typing import Literal, TypeAlias
 
     from roslet.idl.records import TypeName
 
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     Path: TypeAlias = tuple[str, ...]
     Role: TypeAlias = Literal["value", "count", "dummy"]
     Kind: TypeAlias = Literal["fixed", "bounded", "unbounded"]
-    Operation: TypeAlias = Union["Run", "Text", "Octets", "Numbers", "Sequence"]
+    Operation: TypeAlias = "Run" | "Text" | "Octets" | "Numbers" | "Sequence"
     State: TypeAlias = tuple[int, int]
 else:
     Encoding = Path = Role = Kind = Operation = State = object
@@ -60,8 +61,9 @@ class Slot(Record):
     """A fixed piece of a run at `offset` bytes from the run's first byte (after its alignment).
 
     `count` is None for a scalar, else the size of a fixed numeric array. `role` is "count" for the uint32 that precedes
-    the variable operation with the same path (a string's length is in bytes, with the NUL in CDR; a wide string's in
-    16-bit units), "dummy" for the byte of 0 that CDR puts in an empty struct (its path is the struct's).
+    the variable operation with the same path (a string's length is in bytes, with the NUL in CDR; a wide
+    string's in 16-bit units), "dummy" for the byte of 0 that CDR puts in an empty struct (its path is the
+    struct's).
     """
 
     __slots__ = ("count", "offset", "path", "primitive", "role")
@@ -84,8 +86,8 @@ class Slot(Record):
 
 
 class Run(Record):
-    """Merged fixed pieces: `size` bytes, those between the slots are padding of value 0. At most one slot is a count,
-    and it is the last one."""
+    """Merged fixed pieces: `size` bytes, those between the slots are padding of value 0. At most one slot is
+    a count, and it is the last one."""
 
     __slots__ = ("align", "size", "slots")
     _fields = ("align", "size", "slots")
@@ -97,8 +99,9 @@ class Run(Record):
 
 
 class Text(Record):
-    """A string's bytes. UTF-8, in CDR followed by a NUL that the length counts (`terminator` is 1); `wide`: UTF-16 units
-    without NUL, in the byte order of the stream. `bound`: bytes of UTF-8, or 16-bit units, without the NUL."""
+    """A string's bytes. UTF-8, in CDR followed by a NUL that the length counts (`terminator` is 1); `wide`:
+    UTF-16 units without NUL, in the byte order of the stream. `bound`: bytes of UTF-8, or 16-bit units,
+    without the NUL."""
 
     __slots__ = ("bound", "path", "terminator", "wide")
     _fields = ("path", "bound", "wide", "terminator")
@@ -122,7 +125,8 @@ class Octets(Record):
 
 
 class Numbers(Record):
-    """The elements of a bounded or unbounded numeric or bool array. With no element there is no alignment either.
+    """The elements of a bounded or unbounded numeric or bool array. With no element there is no alignment
+    either.
 
     `align` as in the other operations; `pad` is padding that is known to be needed if there is an element.
     """
@@ -141,9 +145,9 @@ class Numbers(Record):
 class Sequence(Record):
     """An array of strings, messages or ROS 1 times.
 
-    `kind` fixed: exactly `size` elements and no count in the bytes; bounded: at most `size`; unbounded: size is None.
-    `element` is the element's layout; its paths start at the element. `element.minimum` is a lower bound at any
-    position, fit to check a count against the bytes left.
+    `kind` fixed: exactly `size` elements and no count in the bytes; bounded: at most `size`; unbounded: size
+    is None. `element` is the element's layout; its paths start at the element. `element.minimum` is a lower
+    bound at any position, fit to check a count against the bytes left.
     """
 
     __slots__ = ("element", "kind", "path", "size")
@@ -160,9 +164,10 @@ class Layout(Record):
     """The whole of a message, or of an element of a `Sequence`.
 
     `name` is the message's TypeName, or the primitive's name ("string", "wstring", "time", "duration") for an element
-    that is no message. `structs` lists the nested values that a reader creates, outer before inner: (path, TypeName or
-    "time" or "duration"). `minimum` and `maximum` are bytes of the body, exact for a message and lower and upper bounds
-    at any position for an element; `maximum` is None where unbounded. The CDR encapsulation header is not counted.
+    that is no message. `structs` lists the nested values that a reader creates, outer before inner: (path,
+    TypeName or "time" or "duration"). `minimum` and `maximum` are bytes of the body, exact for a message and
+    lower and upper bounds at any position for an element; `maximum` is None where unbounded. The CDR
+    encapsulation header is not counted.
     """
 
     __slots__ = ("encoding", "maximum", "minimum", "name", "operations", "structs")

@@ -1,7 +1,8 @@
 """Minimum and maximum sizes, by walking a layout's operations with the shortest and the longest content.
 
-Padding makes sizes depend on the position, but moving a position up to a multiple never reorders two positions: what
-starts later ends no earlier. Hence the longest message is the one whose every variable part is longest.
+Padding makes sizes depend on the position, but moving a position up to a multiple never reorders two
+positions: what starts later ends no earlier. Hence the longest message is the one whose every variable part
+is longest.
 """
 
 from __future__ import annotations

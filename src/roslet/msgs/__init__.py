@@ -3,8 +3,9 @@
     from roslet.msgs.ros1.std_msgs.msg import String
     from roslet.msgs.ros2.example_interfaces.srv import AddTwoInts
 
-The definitions are those of the process's registry: what was loaded, what the environment has, what is bundled. There
-are no Python files of the bundled packages, only stubs, so that editors and type checkers know their fields.
+The definitions are those of the process's registry: what was loaded, what the environment has, what is
+bundled. There are no Python files of the bundled packages, only stubs, so that editors and type checkers know
+their fields.
 """
 
 from roslet.msgs.finder import install

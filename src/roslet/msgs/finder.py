@@ -29,7 +29,9 @@ class Finder:
         self.prefix = prefix
         self.dialect: Dialect = dialect
 
-    def find_spec(self, name: str, _path: Sequence[str] | None = None, _target: object = None) -> ModuleSpec | None:
+    def find_spec(
+        self, name: str, _path: Sequence[str] | None = None, _target: object = None
+    ) -> ModuleSpec | None:
         """For the import system."""
         if self.prefix:
             if not name.startswith(self.prefix + "."):
@@ -73,7 +75,7 @@ class _Loader:
             return
         module.__doc__ = "The %s interfaces of %s." % (kind, self.package)
         module.__getattr__ = self.member(module, kind)  # type: ignore[method-assign]
-        module.__dir__ = lambda: self.names(kind)  # type: ignore[method-assign, assignment]
+        module.__dir__ = lambda: self.names(kind)  # type: ignore[method-assign]
 
     def names(self, kind: Any) -> list[str]:
         registry = runtime.registry(self.dialect)
@@ -128,15 +130,15 @@ def install(prefix: str, dialect: Dialect, first: bool = True) -> Finder:
     for present in sys.meta_path:
         if isinstance(present, Finder) and present.prefix == prefix and present.dialect == dialect:
             return present
-    finder: Any = Finder(prefix, dialect)
+    finder = Finder(prefix, dialect)
     if first:
         sys.meta_path.insert(0, finder)
     else:
         sys.meta_path.append(finder)
-    return finder  # type: ignore[no-any-return]
+    return finder
 
 
 def uninstall(finder: Finder) -> None:
     """Take a finder out of the import system; modules that are imported stay."""
     if finder in sys.meta_path:
-        sys.meta_path.remove(finder)  # type: ignore[arg-type]
+        sys.meta_path.remove(finder)

@@ -1,18 +1,18 @@
 """Numeric arrays of messages: what a reader hands out, and what a writer accepts.
 
-A reader gives, without copying: a numpy ndarray where numpy is installed, a `memoryview` cast to the element's type on
-a CPython without it. MicroPython has neither and gets an `array.array`, which is a copy. `bool` arrays without numpy are
-lists. A view shows the buffer it was made on: it is valid as long as it is held, and it shows other content as soon as
-the owner of the buffer reuses it.
+A reader gives, without copying: a numpy ndarray where numpy is installed, a `memoryview` cast to the
+element's type on a CPython without it. MicroPython has neither and gets an `array.array`, which is a copy.
+`bool` arrays without numpy are lists. A view shows the buffer it was made on: it is valid as long as it is
+held, and it shows other content as soon as the owner of the buffer reuses it.
 
-A writer accepts a numpy array, anything with the buffer interface of the right element type, a list, tuple or range.
+A writer accepts a numpy array, anything with the buffer interface of the right element type, a list, tuple or
+range.
 
 numpy is imported when the first array type is asked for, never before: `import roslet` must stay quick.
 """
 
 import struct
 import sys
-from array import array
 
 from roslet.wire.primitives import BOOL, CPYTHON
 
@@ -39,7 +39,21 @@ TYPECODES = {
 """The `struct` and `array` code of every numeric primitive."""
 
 LARGE = 16384
-"""Bytes from which a contiguous array is lent to the caller as a view; below, a copy is cheaper than a view."""
+"""Bytes from which a contiguous array is lent to the caller as a view; below, a copy is cheaper than a
+view."""
+
+
+_array_type: "Any" = None
+
+
+def _array() -> "Any":
+    """`array.array`, imported late: on CPython it brings `collections.abc` with it."""
+    global _array_type
+    if _array_type is None:
+        from array import array
+
+        _array_type = array
+    return _array_type
 
 
 class _NoArray:
@@ -49,9 +63,10 @@ class _NoArray:
 class Numbers:
     """The arrays of one primitive.
 
-    `type` is numpy's ndarray (a class without instances where there is no numpy) and `tag` its dtype, else the type
-    code. `view(buffer, tag, count, offset)` makes a reader's array; `empty` is one of no elements, shared and not to be
-    written. `zeros(count)` is a new array; `raw(value)` the little-endian bytes of what a writer was given.
+    `type` is numpy's ndarray (a class without instances where there is no numpy) and `tag` its dtype, else
+    the type code. `view(buffer, tag, count, offset)` makes a reader's array; `empty` is one of no elements,
+    shared and not to be written. `zeros(count)` is a new array; `raw(value)` the little-endian bytes of what
+    a writer was given.
     """
 
     def __init__(self, primitive: str, numpy: "Any") -> None:
@@ -61,16 +76,16 @@ class Numbers:
         self.numpy = numpy
         if numpy is not None:
             name = "?" if primitive == "bool" else "<" + self.code.replace("b", "i1").replace("B", "u1")
-            self.type: "Any" = numpy.ndarray
-            self.tag: "Any" = numpy.dtype(name)
-            self.view: "Callable[..., Any]" = numpy.frombuffer
-            self.empty: "Any" = numpy.zeros(0, self.tag)
+            self.type: Any = numpy.ndarray
+            self.tag: Any = numpy.dtype(name)
+            self.view: Callable[..., Any] = numpy.frombuffer
+            self.empty: Any = numpy.zeros(0, self.tag)
             self.empty.flags.writeable = False
         else:
             self.type = _NoArray
             self.tag = self.code
             self.view = _view_bool if primitive == "bool" else _view
-            self.empty = [] if primitive == "bool" else array(self.code)
+            self.empty = [] if primitive == "bool" else _array()(self.code)
 
     def zeros(self, count: int) -> "Any":
         """A new array of `count` zeros."""
@@ -78,12 +93,13 @@ class Numbers:
             return self.numpy.zeros(count, self.tag)
         if self.primitive == "bool":
             return [False] * count
-        return array(self.code, bytes(count * self.size))
+        return _array()(self.code, bytes(count * self.size))
 
     def raw(self, value: "Any") -> "Bytes":
         """The elements of `value` as little-endian bytes, perhaps lent by `value` itself.
 
-        Raises TypeError, ValueError, OverflowError, LookupError or struct.error for what is no array of the type.
+        Raises TypeError, ValueError, OverflowError, LookupError or struct.error for what is no array of the
+        type.
         """
         kind = type(value)
         if kind is list or kind is tuple:
@@ -94,7 +110,7 @@ class Numbers:
             return struct.pack("<%d%s" % (len(value), self.code), *value)
         if CPYTHON:
             return self._raw_buffer(value)
-        if kind is array:
+        if kind is _array():
             data = memoryview(value)
             if len(value) and struct.calcsize(self.code) * len(value) == len(bytes(data)):
                 return bytes(data)
@@ -104,7 +120,7 @@ class Numbers:
         numpy = self.numpy
         if numpy is not None and isinstance(value, (numpy.ndarray, numpy.generic)):
             return _lend(value if value.dtype == self.tag else self._convert(value))
-        if isinstance(value, (array, memoryview)):
+        if isinstance(value, (memoryview, _array())):
             view = memoryview(value)
             code = view.format
             if code == "l" or code == "L":  # 4 or 8 bytes, as the C compiler decided
@@ -113,14 +129,14 @@ class Numbers:
                 return bytes([BOOL[element] for element in value])
             if code == self.code and sys.byteorder == "little":
                 return _lend(view)
-        if isinstance(value, (bytes, bytearray, memoryview, array)) and self.code not in "bB":
+        if isinstance(value, (bytes, bytearray)) and self.code not in "bB":
             # Bytes are a sequence of small integers, but somebody who gives them means something else.
-            if isinstance(value, (bytes, bytearray)):
-                raise TypeError("expected an array of %s, got %s" % (self.primitive, type(value).__name__))
+            raise TypeError("expected an array of %s, got %s" % (self.primitive, type(value).__name__))
         return self.raw(_listed(value))
 
     def _convert(self, value: "Any") -> "Any":
-        """An ndarray of another dtype, converted if every element keeps its value (floats: up to rounding)."""
+        """An ndarray of another dtype, converted if every element keeps its value (floats: up to
+        rounding)."""
         numpy = self.numpy
         kind = value.dtype.kind
         if self.code in "fd":
@@ -154,7 +170,7 @@ class Numbers:
         values = struct.unpack("%s%d%s" % (">" if big else "<", count, self.code), bytes(data))
         if self.primitive == "bool":
             return [value != 0 for value in values]
-        return array(self.code, values)
+        return _array()(self.code, values)
 
 
 def _listed(value: "Any") -> "list[Any]":
@@ -181,7 +197,7 @@ def _view(buffer: "Any", code: str, count: int, offset: int) -> "Any":
     data = buffer[offset : offset + count * size]
     if CPYTHON and sys.byteorder == "little":
         return memoryview(data).cast(code)  # type: ignore[call-overload]
-    return array(code, struct.unpack("<%d%s" % (count, code), data))
+    return _array()(code, struct.unpack("<%d%s" % (count, code), data))
 
 
 def _view_bool(buffer: "Any", _code: str, count: int, offset: int) -> "list[bool]":
@@ -214,8 +230,8 @@ def _numpy() -> "Any":
 def octets(value: "Any") -> "Bytes":
     """The bytes of what a writer was given for a uint8 array, lent without copying where possible.
 
-    Accepts bytes, bytearray, memoryviews and arrays of bytes, ndarrays of integers, and sequences of integers. Raises
-    TypeError, ValueError or OverflowError for anything else.
+    Accepts bytes, bytearray, memoryviews and arrays of bytes, ndarrays of integers, and sequences of
+    integers. Raises TypeError, ValueError or OverflowError for anything else.
     """
     kind = type(value)
     if kind is bytes or kind is bytearray:
@@ -225,9 +241,9 @@ def octets(value: "Any") -> "Bytes":
     if not CPYTHON:
         if kind is memoryview:
             return value  # type: ignore[no-any-return]
-        if kind is array:
+        if kind is _array():
             return memoryview(value)
-    elif isinstance(value, (memoryview, array)):
+    elif isinstance(value, (memoryview, _array())):
         view = memoryview(value)
         if view.format in ("B", "c") and view.c_contiguous:
             return view if view.format == "B" and view.ndim == 1 else view.cast("B")

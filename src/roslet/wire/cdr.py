@@ -1,12 +1,13 @@
 """CDR: version 1 in both byte orders to read and write, and plain version 2 to read.
 
-Sources: OMG CORBA 3.0 15.3 (CDR), DDSI-RTPS 2.5 section 10 (encapsulation), DDS-XTypes 1.3 section 7.4 (version 2).
+Sources: OMG CORBA 3.0 15.3 (CDR), DDSI-RTPS 2.5 section 10 (encapsulation), DDS-XTypes 1.3 section 7.4
+(version 2).
 
     encapsulation = two bytes of representation identifier, two bytes of options, then the body
     the two low bits of the options count the padding bytes after the body
 
-What follows the body is not looked at, as in every DDS: writers pad to a multiple of 4 with or without saying so, and
-rclpy's `serialize_message` leaves as many bytes behind the body as it overestimated its size.
+What follows the body is not looked at, as in every DDS: writers pad to a multiple of 4 with or without saying
+so, and rclpy's `serialize_message` leaves as many bytes behind the body as it overestimated its size.
 """
 
 from roslet.errors import MalformedMessage
@@ -61,7 +62,8 @@ def write(message: "Any", representation: int = CDR_LE) -> bytearray:
 
 
 def size(message: "Any") -> int:
-    """The number of bytes of `message` in CDR version 1, with the encapsulation header. Raises InvalidMessage."""
+    """The number of bytes of `message` in CDR version 1, with the encapsulation header. Raises
+    InvalidMessage."""
     sizer = Sizer("<", 8, 1)
     sizer.message(message, message._spec, "")
     return sizer.position + HEADER_SIZE

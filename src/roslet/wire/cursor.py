@@ -1,15 +1,16 @@
-"""A writer and a reader that walk a message's field table: slower than generated code, and exact about what is wrong.
+"""A writer and a reader that walk a message's field table: slower than generated code, and exact about what
+is wrong.
 
-They serve when generated code failed (to say where and why), for big-endian and version 2 CDR, for sizes, and as the
-second opinion in the tests. Alignment belongs to the cursor. Runs on MicroPython.
+They serve when generated code failed (to say where and why), for big-endian and version 2 CDR, for sizes, and
+as the second opinion in the tests. Alignment belongs to the cursor. Runs on MicroPython.
 
 A field table (`Message._spec`) is a tuple of fields, each a tuple
 
     (attribute, base, kind, size, bound)
 
-base: a primitive's name, or the class of a nested message; kind: SINGLE, FIXED, BOUNDED or UNBOUNDED; size: the number of
-elements of a FIXED array, the most elements of a BOUNDED one; bound: the most bytes of a string (16-bit units of a wide one)
-or None.
+base: a primitive's name, or the class of a nested message; kind: SINGLE, FIXED, BOUNDED or UNBOUNDED; size:
+the number of elements of a FIXED array, the most elements of a BOUNDED one; bound: the most bytes of a string
+(16-bit units of a wide one) or None.
 """
 
 import struct
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 
 SINGLE, FIXED, BOUNDED, UNBOUNDED = 0, 1, 2, 3
 
-# A message without fields takes no bytes in ROS 1, so that a count of such elements is checked against nothing. No
-# definition in use has an array of empty messages; this many are still made in milliseconds.
+# A message without fields takes no bytes in ROS 1, so that a count of such elements is checked against
+# nothing. No definition in use has an array of empty messages; this many are still made in milliseconds.
 MAX_EMPTY_ELEMENTS = 65536
 
 _RANGES = {
@@ -55,8 +56,8 @@ def _type_name(value: "Any") -> str:
 
 
 class Writer:
-    """Appends a message's bytes to `data`. `largest` is the largest alignment: 1 in ROS 1, 8 in CDR, 4 in CDR version 2;
-    `terminator` the number of NULs after a string; positions count from the writer's start.
+    """Appends a message's bytes to `data`. `largest` is the largest alignment: 1 in ROS 1, 8 in CDR, 4 in CDR
+    version 2; `terminator` the number of NULs after a string; positions count from the writer's start.
 
     Raises InvalidMessage with the value path for a value that its field cannot hold.
     """
@@ -188,7 +189,9 @@ class Writer:
         else:
             if not isinstance(value, (list, tuple)):
                 if isinstance(value, (str, bytes, bytearray, dict)) or not hasattr(value, "__iter__"):
-                    raise InvalidMessage("expected a list, got %s %s" % (_type_name(value), _shown(value)), path)
+                    raise InvalidMessage(
+                        "expected a list, got %s %s" % (_type_name(value), _shown(value)), path
+                    )
                 value = list(value)
             length = len(value)
         if kind == FIXED and length != size:
@@ -202,22 +205,19 @@ class Writer:
                 self.align(_SIZES[base])
                 self.numbers(data, base)
             return
-        at = 0
-        for element in value:
+        for at, element in enumerate(value):
             self.value(element, base, bound, "%s[%d]" % (path, at))
-            at += 1
 
     def raw(self, value: "Any", primitive: str, path: str) -> "bytes | bytearray | memoryview":
-        """An array's elements as little-endian bytes; raises InvalidMessage naming the first wrong element."""
+        """An array's elements as little-endian bytes; raises InvalidMessage naming the first wrong
+        element."""
         try:
             return octets(value) if primitive == "uint8" else numbers(primitive).raw(value)
         except FAILURES as error:
             if not isinstance(value, (str, bytes, bytearray, dict)) and hasattr(value, "__iter__"):
                 probe = Writer("<", 1, 0)
-                at = 0
-                for element in value:
+                for at, element in enumerate(value):
                     probe.number(element, primitive, "%s[%d]" % (path, at))
-                    at += 1
             raise InvalidMessage(
                 "expected %s, got %s (%s)"
                 % ("bytes" if primitive == "uint8" else "an array of " + primitive, _type_name(value), error),
@@ -241,11 +241,11 @@ class Sizer(Writer):
 
 
 class Reader:
-    """Reads a message from buffer[start:end]; `order`, `largest` and `terminator` as in `Writer`. `origin` is where
-    positions and offsets count from for alignment.
+    """Reads a message from buffer[start:end]; `order`, `largest` and `terminator` as in `Writer`. `origin` is
+    where positions and offsets count from for alignment.
 
-    Raises MalformedMessage with the offset from `start` and the path. Allocates nothing for a count that the bytes left
-    cannot hold.
+    Raises MalformedMessage with the offset from `start` and the path. Allocates nothing for a count that the
+    bytes left cannot hold.
     """
 
     def __init__(
@@ -292,10 +292,10 @@ class Reader:
         dot = path + "." if path else ""
         for attribute, base, array, size, bound in kind._spec:
             where = dot + attribute
-            if array == SINGLE:
-                element = self.value(base, bound, where)
-            else:
-                element = self.array(base, array, size, bound, where)
+            single = array == SINGLE
+            element = (
+                self.value(base, bound, where) if single else self.array(base, array, size, bound, where)
+            )
             setattr(value, attribute, element)
         if not kind._spec and self.terminator:
             self.take(1, path)
@@ -388,5 +388,5 @@ class Reader:
 
 
 SMALL_OCTETS = 64
-"""A fixed uint8 array of at most so many elements (identifiers, hashes) is read as bytes: hashable, and its own memory;
-a larger one as a view."""
+"""A fixed uint8 array of at most so many elements (identifiers, hashes) is read as bytes: hashable, and its
+own memory; a larger one as a view."""

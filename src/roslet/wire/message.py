@@ -7,11 +7,11 @@ from roslet.wire.cursor import SINGLE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Any, ClassVar, TypeAlias
 
     from typing_extensions import Self
 
-    Bytes = bytes | bytearray | memoryview
+    Bytes: TypeAlias = bytes | bytearray | memoryview
 
 GATHER_MINIMUM = 16384
 """Bytes from which a payload is handed out for a gathering send instead of being copied."""
@@ -22,8 +22,9 @@ _MAX_SCRATCHES = 8
 _scratches: "list[memoryview]" = []
 
 
-class BufferTooSmall(RosletError):
-    """The buffer given to `serialize_into` ends too early. `size` is the message's serialised size in bytes."""
+class BufferTooSmall(RosletError):  # noqa: N818 - the tree's exceptions say what is wrong
+    """The buffer given to `serialize_into` ends too early. `size` is the message's serialised size in
+    bytes."""
 
     def __init__(self, size: int) -> None:
         super().__init__("the message needs %d bytes" % size)
@@ -33,14 +34,15 @@ class BufferTooSmall(RosletError):
 class Message:
     """A message of one type of one dialect.
 
-    A generated class has its fields as slots, the definition's constants as class attributes, and the attributes below.
-    Arrays of a received message may be views on the buffer it was read from (`_views`): valid as long as they are held,
-    but only as long as the owner of the buffer does not reuse it; `copy()` takes the message out of it.
+    A generated class has its fields as slots, the definition's constants as class attributes, and the
+    attributes below. Arrays of a received message may be views on the buffer it was read from (`_views`):
+    valid as long as they are held, but only as long as the owner of the buffer does not reuse it; `copy()`
+    takes the message out of it.
 
     Field names that are Python keywords, or names of the methods here, have a trailing underscore.
     """
 
-    __slots__ = ()
+    __slots__ = ("_connection_header",)  # no field: what a rospy program is told of where a message came from
 
     _type: "ClassVar[str]" = ""
     """The type's name as the dialect spells it."""
@@ -52,7 +54,8 @@ class Message:
     """Every field's name (as the definition has it) and its type as the definition spells it."""
     _views: "ClassVar[bool]" = False
     _fixed_size: "ClassVar[int | None]" = None
-    """Bytes of every serialised message of the type, if they are all of one size; with CDR's encapsulation header."""
+    """Bytes of every serialised message of the type, if they are all of one size; with CDR's encapsulation
+    header."""
     _minimum_size: "ClassVar[int]" = 0
     _maximum_size: "ClassVar[int | None]" = None
     _md5sum: "ClassVar[str]" = ""
@@ -63,21 +66,23 @@ class Message:
     def serialize_into(
         self, buffer: "bytearray | memoryview", offset: int = 0, parts: "list[tuple[int, Any]] | None" = None
     ) -> int:
-        """Write the message (in CDR: the encapsulation header and the body) from `offset`; the offset after it.
+        """Write the message (in CDR: the encapsulation header and the body) from `offset`; the offset after
+        it.
 
-        `parts`, if given, is an empty list: payloads of at least GATHER_MINIMUM bytes are then appended to it as
-        (offset in `buffer` before which the payload belongs, bytes-like) instead of being copied, and the offset
-        returned is that of the rest. Raises InvalidMessage for a value that its field cannot hold, BufferTooSmall if
-        the buffer is; what the buffer then holds from `offset` on is unspecified.
+        `parts`, if given, is an empty list: payloads of at least GATHER_MINIMUM bytes are then appended to it
+        as (offset in `buffer` before which the payload belongs, bytes-like) instead of being copied, and the
+        offset returned is that of the rest. Raises InvalidMessage for a value that its field cannot hold,
+        BufferTooSmall if the buffer is; what the buffer then holds from `offset` on is unspecified.
         """
         raise NotImplementedError
 
     @classmethod
     def deserialize_from(cls, buffer: "Any", start: int, end: int) -> "Self":
-        """The message that takes all of buffer[start:end]; `buffer` is a memoryview of bytes. In CDR bytes after the
-        body are ignored.
+        """The message that takes all of buffer[start:end]; `buffer` is a memoryview of bytes. In CDR bytes
+        after the body are ignored.
 
-        Raises MalformedMessage (offset from `start`, value path), having allocated no more than the input justifies.
+        Raises MalformedMessage (offset from `start`, value path), having allocated no more than the input
+        justifies.
         """
         raise NotImplementedError
 
@@ -95,7 +100,7 @@ class Message:
             scratch = _scratches.pop()
         except IndexError:
             scratch = memoryview(bytearray(_SCRATCH))
-        parts: "list[tuple[int, Any]]" = []
+        parts: list[tuple[int, Any]] = []
         while True:
             try:
                 end = self.serialize_into(scratch, 0, parts)
@@ -103,7 +108,7 @@ class Message:
             except BufferTooSmall as error:
                 scratch = memoryview(bytearray(error.size + _SCRATCH))
         if parts:
-            pieces: "list[Any]" = []
+            pieces: list[Any] = []
             done = 0
             for offset, payload in parts:
                 pieces.append(scratch[done:offset])
@@ -126,7 +131,7 @@ class Message:
                 return cls.deserialize_from(memoryview(buffer), 0, len(buffer))
             return cls.deserialize_from(buffer, 0, len(buffer))
         view = memoryview(buffer)
-        if kind is not bytearray and kind is not memoryview or getattr(view, "format", "B") != "B":
+        if (kind is not bytearray and kind is not memoryview) or getattr(view, "format", "B") != "B":
             view = view.cast("B")
         return cls.deserialize_from(view, 0, len(view))
 
@@ -163,7 +168,7 @@ def same(one: "Any", other: "Any") -> bool:
     if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
         if len(one) != len(other):
             return False
-        return all([same(left, right) for left, right in zip(one, other)])
+        return all(same(element, other[at]) for at, element in enumerate(one))
     if isinstance(one, (str, int, float, Message)) or type(one) is type(other) is bytes:
         equal = one == other
         if equal is True or equal is False:
@@ -175,7 +180,7 @@ def same(one: "Any", other: "Any") -> bool:
             return _same_arrays(one, other)
         if isinstance(one, str) or isinstance(other, str):
             return False
-        return all([left == right for left, right in zip(one, other)])
+        return all(element == other[at] for at, element in enumerate(one))
     return bool(one == other)
 
 
@@ -212,14 +217,14 @@ def _copied(value: "Any", base: "Any", kind: int) -> "Any":
 def rescue_write(
     message: "Any", buffer: "Any", offset: int, parts: "list[tuple[int, Any]] | None", error: Exception
 ) -> int:
-    """What generated code does when its fast path raised: write by the field table, which accepts everything that is
-    valid, or raise the exact error. Same contract as `Message.serialize_into`."""
+    """What generated code does when its fast path raised: write by the field table, which accepts everything
+    that is valid, or raise the exact error. Same contract as `Message.serialize_into`."""
     if isinstance(error, RosletError):
         raise error
     if parts is not None:
         del parts[:]
     codec = cdr if message._encoding == "cdr" else ros1
-    size = codec.size(message)
+    size: int = codec.size(message)
     if offset + size > len(buffer):
         raise BufferTooSmall(size)
     buffer[offset : offset + size] = codec.write(message)
@@ -227,8 +232,8 @@ def rescue_write(
 
 
 def rescue_read(kind: "Any", buffer: "Any", start: int, end: int) -> "Any":
-    """What generated code does when its fast path raised: read by the field table, which knows every representation, or
-    raise the exact error. Same contract as `Message.deserialize_from`."""
+    """What generated code does when its fast path raised: read by the field table, which knows every
+    representation, or raise the exact error. Same contract as `Message.deserialize_from`."""
     if end > len(buffer):
         end = len(buffer)
     codec = cdr if kind._encoding == "cdr" else ros1
@@ -246,9 +251,9 @@ class Service:
 
 
 class Action:
-    """An action type: `Goal`, `Result`, `Feedback`, and what the dialect derives of them (ROS 2: the services `SendGoal`
-    and `GetResult` and the message `FeedbackMessage`; ROS 1: the messages `ActionGoal`, `ActionResult`,
-    `ActionFeedback` and `Action`)."""
+    """An action type: `Goal`, `Result`, `Feedback`, and what the dialect derives of them (ROS 2: the services
+    `SendGoal` and `GetResult` and the message `FeedbackMessage`; ROS 1: the messages `ActionGoal`,
+    `ActionResult`, `ActionFeedback` and `Action`)."""
 
     _type: "ClassVar[str]" = ""
     _md5sum: "ClassVar[str]" = ""

@@ -1,7 +1,7 @@
 """The one place where the fastest primitive that the interpreter has is chosen, once, at import.
 
-CPython has `struct.Struct`, whose bound methods save a lookup of the format in every call, and UTF-8 that keeps every
-byte; MicroPython has neither. Generated code calls what stands here.
+CPython has `struct.Struct`, whose bound methods save a lookup of the format in every call, and UTF-8 that
+keeps every byte; MicroPython has neither. Generated code calls what stands here.
 """
 
 import struct

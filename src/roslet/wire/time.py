@@ -1,6 +1,8 @@
-"""ROS 1 `time` and `duration` as values: whole seconds and nanoseconds, with the arithmetic of ROS 1's own classes.
+"""ROS 1 `time` and `duration` as values: whole seconds and nanoseconds, with the arithmetic of ROS 1's own
+classes.
 
-Runs on MicroPython. A serialiser touches `secs` and `nsecs` only, so any object with these two serves in a message.
+Runs on MicroPython. A serialiser touches `secs` and `nsecs` only, so any object with these two serves in a
+message.
 """
 
 TYPE_CHECKING = False
@@ -99,7 +101,8 @@ class _Seconds:
 
 
 class Time(_Seconds):
-    """A point in time since the epoch, never negative. `Time(1.5)`, `Time(1, 500000000)`, `Time.from_sec(1.5)`.
+    """A point in time since the epoch, never negative. `Time(1.5)`, `Time(1, 500000000)`,
+    `Time.from_sec(1.5)`.
 
     Raises TypeError if the value is negative. Time - Time is a Duration, Time +/- Duration is a Time.
     """

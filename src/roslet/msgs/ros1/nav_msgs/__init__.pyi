@@ -1,0 +1,5 @@
+# Generated from the definitions of nav_msgs by roslet.gen.stubs. Do not edit.
+
+from . import action as action
+from . import msg as msg
+from . import srv as srv

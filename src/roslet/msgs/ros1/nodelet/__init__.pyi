@@ -1,0 +1,3 @@
+# Generated from the definitions of nodelet by roslet.gen.stubs. Do not edit.
+
+from . import srv as srv

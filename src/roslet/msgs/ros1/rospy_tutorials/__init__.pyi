@@ -1,0 +1,4 @@
+# Generated from the definitions of rospy_tutorials by roslet.gen.stubs. Do not edit.
+
+from . import msg as msg
+from . import srv as srv

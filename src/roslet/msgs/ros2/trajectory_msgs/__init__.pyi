@@ -1,0 +1,3 @@
+# Generated from the definitions of trajectory_msgs by roslet.gen.stubs. Do not edit.
+
+from . import msg as msg
