@@ -94,9 +94,7 @@ def descriptors() -> int:
     return len(os.listdir("/proc/self/fd"))
 
 
-def test_the_standard_librarys_client_works_over_one_connection(
-    master: MasterServer, proxy: Any
-) -> None:
+def test_the_standard_librarys_client_works_over_one_connection(master: MasterServer, proxy: Any) -> None:
     for number in range(20):
         assert proxy.setParam("/n", f"/k{number}", [number]) == [1, f"parameter /k{number} set", 0]
     assert proxy.getUri("/n") == [1, "", master.uri]
@@ -176,9 +174,7 @@ GARBAGE = [
 
 
 @pytest.mark.parametrize("data", GARBAGE, ids=range(len(GARBAGE)))
-def test_garbage_harms_nobody_else(
-    master: MasterServer, proxy: Any, data: bytes
-) -> None:
+def test_garbage_harms_nobody_else(master: MasterServer, proxy: Any, data: bytes) -> None:
     with connect(master) as sock:
         try:
             sock.sendall(data)
@@ -192,9 +188,7 @@ def test_garbage_harms_nobody_else(
     wait_until(lambda: master.connections == 1, "the bad connection is gone")
 
 
-def test_a_client_that_leaves_in_the_middle_harms_nobody(
-    master: MasterServer, proxy: Any
-) -> None:
+def test_a_client_that_leaves_in_the_middle_harms_nobody(master: MasterServer, proxy: Any) -> None:
     proxy.setParam("/n", "/big", "x" * 1_000_000)
     request = xmlrpc.client.dumps(("/n", "/big"), "getParam").encode()
     data = b"POST / HTTP/1.1\r\nContent-Length: %d\r\n\r\n" % len(request) + request
@@ -237,9 +231,7 @@ def test_the_longest_silent_connection_makes_room(loop: Reactor) -> None:
             sock.close()
 
 
-def test_a_shutdown_call_is_answered_and_ends_the_master(
-    master: MasterServer, proxy: Any
-) -> None:
+def test_a_shutdown_call_is_answered_and_ends_the_master(master: MasterServer, proxy: Any) -> None:
     assert proxy.shutdown("/n", "enough")[0] == 1
     assert master.stopped.wait(PATIENCE)
     with pytest.raises(ConnectionRefusedError):

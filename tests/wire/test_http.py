@@ -185,7 +185,7 @@ def test_a_close_inside_a_response_is_named_at_every_byte() -> None:
         assert parser.feed(ROSCPP_RESPONSE[:length]) == []
         assert parser.end() == []
         assert parser.error is not None
-    assert parser.error.reason == "truncated"
+        assert parser.error.reason == "truncated"
 
 
 def test_a_close_between_responses_is_no_fault() -> None:

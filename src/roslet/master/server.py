@@ -23,8 +23,6 @@ from roslet.master.core import Master, Notification
 from roslet.names import parse_host_port
 
 if TYPE_CHECKING:
-    from types import FrameType
-
     from roslet.io.select import Reactor
 
 DEFAULT_PORT = 11311
@@ -309,11 +307,8 @@ def run(host: str = "0.0.0.0", port: int = DEFAULT_PORT) -> int:
         return 1
     server.call("setParam", "/roslet_master", "/run_id", str(uuid.uuid1()))
 
-    def terminated(number: int, frame: FrameType | None) -> None:
-        server.stopped.set()
-        loop.wake()
-
-    previous = signal.signal(signal.SIGTERM, terminated)
+    # As Ctrl-C: a handler that only set a flag would not end the loop's sleep.
+    previous = signal.signal(signal.SIGTERM, signal.default_int_handler)
     print(f"ROS_MASTER_URI={server.uri}", flush=True)
     try:
         loop.run_until(server.stopped.is_set)

@@ -161,7 +161,7 @@ class _Parser:
             return self._step_chunk_data()
         if state == _TRAILER:
             return self._step_trailer(complete)
-        if state == _UNTIL_CLOSE and len(self._buffer) > self.max_body:
+        if state == _UNTIL_CLOSE and len(self._buffer) - self._position > self.max_body:
             raise ProtocolError("body-too-large", "more than %d bytes" % self.max_body)
         return False
 
@@ -198,7 +198,7 @@ class _Parser:
             end = buffer.find(b"\n", start, limit)
             if end < 0:
                 break
-            after = bytes(buffer[end + 1 : end + 3])
+            after = bytes(buffer[end + 1 : min(end + 3, limit)])
             if after[:1] == b"\n":
                 return end + 2 - self._position
             if after == b"\r\n":

@@ -10,8 +10,8 @@ makes one linear pass without recursion, holds no more than the document and its
 
 There are no entities but the five of XML and character references; a document type, a comment, a CDATA
 section or a processing instruction is refused, for no ROS peer sends one. Element attributes are skipped
-(Apache's XML-RPC declares a namespace on the root). A carriage return arrives as a line feed, as XML
-prescribes.
+(Apache's XML-RPC declares a namespace on the root). A carriage return is sent bare, as roscpp and rospy send
+it, and arrives as a line feed, as XML prescribes: xmlrpcpp would not read a character reference.
 
 | Python                | XML-RPC                                                    |
 |-----------------------|------------------------------------------------------------|
