@@ -33,7 +33,7 @@ def class_of(kind):
 
 def build(kind, fields):
     message = kind()
-    for slot, slot_type in zip(message.__slots__, kind.SLOT_TYPES, strict=True):
+    for slot, slot_type in zip(message.__slots__, kind.SLOT_TYPES, strict=False):
         name = slot.lstrip("_")
         if name in fields:
             setattr(message, name, build_one(slot_type, fields[name]))
@@ -62,7 +62,7 @@ def plain(kind, value):
 
 def plain_message(message):
     found = {}
-    for slot, slot_type in zip(message.__slots__, message.SLOT_TYPES, strict=True):
+    for slot, slot_type in zip(message.__slots__, message.SLOT_TYPES, strict=False):
         name = slot.lstrip("_")
         if name != "check_fields":
             found[name] = plain(slot_type, getattr(message, name))

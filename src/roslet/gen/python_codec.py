@@ -312,6 +312,9 @@ class Serializer(_Codec):
             name = self.items(operation, holders)
             yield "%s = %s" % (name, self.value(operation.path, holders))
             yield "n = len(%s)" % name
+            if operation.element.name == "string":  # a lone string would pass for a list of letters
+                yield "if type(%s) is str:" % name
+                yield ["raise ValueError"]
             yield from self.bounded(operation.size, 1)
             return "n"
         raise ValueError("a count precedes a variable operation")

@@ -107,6 +107,8 @@ class Numbers:
                 return b""
             if self.primitive == "bool":
                 return bytes([BOOL[element] for element in value])
+            if not CPYTHON:
+                _check_range(value, self.code, self.size)
             return struct.pack("<%d%s" % (len(value), self.code), *value)
         if CPYTHON:
             return self._raw_buffer(value)
@@ -173,6 +175,16 @@ class Numbers:
         return _array()(self.code, values)
 
 
+def _check_range(values: "Any", code: str, size: int) -> None:
+    """What MicroPython's struct leaves out: it keeps the low bits of an integer that is too large."""
+    if code in "fd":
+        return
+    low, high = (0, (1 << 8 * size) - 1) if code in "BHIQ" else (-(1 << 8 * size - 1), (1 << 8 * size - 1) - 1)
+    for value in values:
+        if not low <= value <= high:
+            raise OverflowError("%r does not fit" % value)
+
+
 def _listed(value: "Any") -> "list[Any]":
     if isinstance(value, (str, dict)):
         raise TypeError("expected an array, got " + type(value).__name__)
@@ -237,6 +249,8 @@ def octets(value: "Any") -> "Bytes":
     if kind is bytes or kind is bytearray:
         return value  # type: ignore[no-any-return]
     if kind is list or kind is tuple:
+        if not CPYTHON:
+            _check_range(value, "B", 1)
         return bytes(value)
     if not CPYTHON:
         if kind is memoryview:

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 SINGLE, FIXED, BOUNDED, UNBOUNDED = 0, 1, 2, 3
 
-# A message without fields takes no bytes in ROS 1, so that a count of such elements is checked against
-# nothing. No definition in use has an array of empty messages; this many are still made in milliseconds.
-MAX_EMPTY_ELEMENTS = 65536
+# A message without fields takes no bytes in ROS 1, so that a count of such elements is checked against nothing. No
+# definition in use has an array of empty messages; this many serve whoever counts with one.
+MAX_EMPTY_ELEMENTS = 1024
 
 _RANGES = {
     "int8": (-(1 << 7), (1 << 7) - 1),

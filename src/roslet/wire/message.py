@@ -165,30 +165,22 @@ def same(one: "Any", other: "Any") -> bool:
     """Whether two field values are equal: arrays by their elements, whatever holds them."""
     if one is other:
         return True
-    if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
-        if len(one) != len(other):
-            return False
-        return all(same(element, other[at]) for at, element in enumerate(one))
     if isinstance(one, (str, int, float, Message)) or type(one) is type(other) is bytes:
         equal = one == other
         if equal is True or equal is False:
             return equal
-    if hasattr(one, "__len__") and hasattr(other, "__len__"):
-        if len(one) != len(other):
+    try:
+        length = len(one)
+        if length != len(other):
             return False
-        if hasattr(one, "tobytes") and hasattr(other, "tobytes") and type(one) is type(other):
-            return _same_arrays(one, other)
-        if isinstance(one, str) or isinstance(other, str):
-            return False
-        return all(element == other[at] for at, element in enumerate(one))
-    return bool(one == other)
-
-
-def _same_arrays(one: "Any", other: "Any") -> bool:
-    equal = one == other
-    if equal is True or equal is False:
-        return equal
-    return bool(equal.all())
+    except TypeError:
+        return bool(one == other)
+    if isinstance(one, str) or isinstance(other, str):
+        return False
+    if hasattr(one, "tobytes") and type(one) is type(other):  # ndarrays, or memoryviews
+        equal = one == other
+        return equal if equal is True or equal is False else bool(equal.all())
+    return all(same(one[at], other[at]) for at in range(length))
 
 
 def _copied(value: "Any", base: "Any", kind: int) -> "Any":
