@@ -18,6 +18,7 @@ from typing import Any
 
 import pytest
 
+from roslet.engine.ros1.rpc import RpcServer
 from roslet.io.select import Reactor
 from roslet.master.server import MasterServer, run
 
@@ -199,6 +200,21 @@ def test_a_client_that_leaves_in_the_middle_harms_nobody(master: MasterServer, p
                 assert sock.recv(100)  # leave with nearly all of the answer unread
     assert len(proxy.getParam("/n", "/big")[2]) == 1_000_000
     wait_until(lambda: master.connections == 1, "their connections are gone")
+
+
+def test_a_client_that_never_reads_its_answers_is_cut_off(
+    master: MasterServer, proxy: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(RpcServer, "max_unsent", 5_000_000)
+    proxy.setParam("/n", "/big", "x" * 1_000_000)
+    request = xmlrpc.client.dumps(("/n", "/big"), "getParam").encode()
+    data = b"POST / HTTP/1.1\r\nContent-Length: %d\r\n\r\n" % len(request) + request
+    with connect(master) as sock, pytest.raises(OSError):
+        for _ in range(1000):
+            sock.sendall(data)
+            time.sleep(0.001)
+    assert proxy.getPid("/n")[0] == 1
+    wait_until(lambda: master.connections == 1, "the connection is gone")
 
 
 def test_a_thousand_abandoned_connections_leave_no_descriptor(master: MasterServer) -> None:

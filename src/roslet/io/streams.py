@@ -201,6 +201,9 @@ class Stream:
             if self.closed:
                 return
             self._rest = self._rest[sent:]
+            if self._rest and len(self._rest) > getattr(self.machine, "max_unsent", len(self._rest)):
+                self.lose("unread-answers")
+                return
         queue = getattr(self.machine, "queue", None)
         if queue is None:
             waiting = bool(self._rest)

@@ -36,6 +36,10 @@ and reconnect silently when it has been closed.
 MAX_PIPELINED = 32
 """Requests that a client may send ahead of the answers. No ROS peer sends more than one."""
 
+MAX_UNSENT = 64 * 1024 * 1024
+"""Bytes of answers that a shell holds for a client that does not read them; then it ends the connection. The
+largest single answer is a whole parameter tree."""
+
 MAX_MULTICALL = 1000
 """Calls in one system.multicall; rosnode and rosparam send a few dozen."""
 
@@ -92,8 +96,11 @@ class RpcServer:
     """One accepted connection. Calls are handed out one at a time, in order; the next after the answer.
 
     Holds at most one request being received (`max_body`), MAX_PIPELINED complete ones, and the answers not
-    yet taken by `data_to_send`.
+    yet taken by `data_to_send`. A shell that holds more than `max_unsent` bytes of answers ends the
+    connection.
     """
+
+    max_unsent = MAX_UNSENT
 
     def __init__(
         self,
@@ -115,6 +122,7 @@ class RpcServer:
         self._ended = False
         self._deadline: float | None = now + request_timeout
         self._request_began = False
+        self._refused: list[str] = []
 
     @property
     def closing(self) -> bool:
@@ -160,6 +168,13 @@ class RpcServer:
         """Answer a call with a fault. An answer to a call that is no longer open is dropped."""
         self._answer(call_id, xmlrpc.emit_fault(code, message), now)
 
+    def take_refused(self) -> "list[str]":
+        """Why requests that have come since the last look were refused, one reason each."""
+        refused = self._refused
+        if refused:
+            self._refused = []
+        return refused
+
     def data_to_send(self) -> bytes:
         """What is to be sent now; each byte is returned once."""
         if not self._output:
@@ -180,8 +195,7 @@ class RpcServer:
         if self._parser.idle:
             self._close("idle")
         else:
-            self._output.append(http.emit_error(408))
-            self._close("slow-request")
+            self._refuse(408, "slow-request")
 
     def _answer(self, call_id: int, body: bytes, now: float) -> None:
         if not self._current or call_id != self._current or self.close_reason:
@@ -221,6 +235,7 @@ class RpcServer:
             method, params = xmlrpc.parse_call(request.body)
         except ProtocolError as error:
             # The framing is intact, so only this call failed.
+            self._refused.append(error.reason)
             self._output.append(
                 http.emit_response(
                     xmlrpc.emit_fault(FAULT_PARSE, "no XML-RPC call: %s" % error), self._keep_alive
@@ -233,6 +248,7 @@ class RpcServer:
         self._event = CallReceived(self._current, method, params)
 
     def _refuse(self, status: int, reason: str) -> None:
+        self._refused.append(reason)
         self._output.append(http.emit_error(status))
         self._close(reason)
 
