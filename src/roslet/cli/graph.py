@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.options import UNREACHABLE, CommandFailed
+from roslet.cli.options import UNREACHABLE, CommandError
 from roslet.errors import CallTimeout, Fault, Unreachable
 from roslet.io.blocking import Caller, exchange_headers
 from roslet.names import parse_network
@@ -39,12 +39,12 @@ class Graph:
         self._master.close()
 
     def master(self, method: str, *arguments: Any) -> Any:
-        """The value that the master answers. Raises Fault; CommandFailed where there is no master."""
+        """The value that the master answers. Raises Fault; CommandError where there is no master."""
         try:
             return self._master.call(method, CALLER, *arguments)
         except (Unreachable, CallTimeout) as error:
-            reason = str(error).partition(": ")[2] or str(error)
-            raise CommandFailed(
+            reason = str(error).rpartition(self.master_uri.partition("://")[2] + ": ")[2]
+            raise CommandError(
                 f"cannot reach the master at {self.master_uri} ({reason})", UNREACHABLE
             ) from None
 
@@ -106,13 +106,13 @@ class Graph:
     def probe_service(self, name: str) -> dict[str, str]:
         """The connection header of the service's server: type, md5sum, callerid, ...
 
-        Raises CommandFailed where there is no such service, or where its server does not answer.
+        Raises CommandError where there is no such service, or where its server does not answer.
         """
         uri = self.lookup_service(name)
         if uri is None:
-            raise CommandFailed(f"there is no service {name}")
+            raise CommandError(f"there is no service {name}")
         fields = {"probe": "1", "md5sum": "*", "callerid": CALLER, "service": name}
         try:
             return {**exchange_headers(uri, fields, NODE_TIMEOUT), "uri": uri}
         except (Unreachable, CallTimeout) as error:
-            raise CommandFailed(f"cannot reach the server of {name}: {error}", UNREACHABLE) from None
+            raise CommandError(f"cannot reach the server of {name}: {error}", UNREACHABLE) from None

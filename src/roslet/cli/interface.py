@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.options import CommandFailed, Group
+from roslet.cli.options import CommandError, Group
 from roslet.errors import DefinitionError, UnknownType
 from roslet.idl import ROS1, ROS2, Action, Message, Registry, Service
 
@@ -106,7 +106,7 @@ def find(registries: dict[Dialect, Registry], name: str) -> dict[Dialect, Interf
     if not found:
         # Something that is wrong in a file says more than that there is no file.
         problems.sort(key=lambda problem: (not problem.file, isinstance(problem, UnknownType)))
-        raise problems[0] if problems[0].file else CommandFailed(f"no definition of {name} found")
+        raise problems[0] if problems[0].file else CommandError(f"no definition of {name} found")
     return found
 
 
@@ -217,7 +217,7 @@ def run_hash(arguments: argparse.Namespace) -> int:
     from roslet.idl import md5sum, type_hash
 
     registries = _registries(arguments)
-    hashes: dict[str, str] = {}
+    hashes: dict[Dialect, str] = {}
     for dialect, interface in find(registries, arguments.type).items():
         if dialect == ROS2:
             hashes[dialect] = type_hash(registries[dialect], interface.name)
@@ -232,8 +232,8 @@ def run_hash(arguments: argparse.Namespace) -> int:
 
         emit_json({"type": arguments.type, **hashes})
         return 0
-    for dialect in sorted(hashes):
-        print(f"{NAMES[dialect]}  {hashes[dialect]}" if len(registries) > 1 else hashes[dialect])
+    for which in sorted(hashes):
+        print(f"{NAMES[which]}  {hashes[which]}" if len(registries) > 1 else hashes[which])
     return 0
 
 
@@ -292,12 +292,12 @@ def run_list(arguments: argparse.Namespace) -> int:
     """`roslet interface list`."""
     from roslet.cli.output import emit_json, table
 
-    where: dict[tuple[str, str, str], list[str]] = {}
+    where: dict[tuple[str, str, str], list[Dialect]] = {}
     for dialect, registry in _registries(arguments).items():
-        for name in registry.names(arguments.kind, arguments.package):
-            where.setdefault((name.package, name.kind, name.name), []).append(dialect)
+        for found in registry.names(arguments.kind, arguments.package):
+            where.setdefault((found.package, found.kind, found.name), []).append(dialect)
     if not where and arguments.package:
-        raise CommandFailed(f"no definitions of {arguments.package} found")
+        raise CommandError(f"no definitions of {arguments.package} found")
     rows = [("/".join(key), where[key]) for key in sorted(where)]
     if arguments.json:
         emit_json([{"type": name, "dialects": dialects} for name, dialects in rows])
@@ -305,5 +305,5 @@ def run_list(arguments: argparse.Namespace) -> int:
         for name, _ in rows:
             print(name)
     else:
-        table(("TYPE", "DEFINED FOR"), [(name, ", ".join(NAMES[d] for d in ds)) for name, ds in rows])  # type: ignore[index]
+        table(("TYPE", "DEFINED FOR"), [(name, ", ".join(NAMES[d] for d in ds)) for name, ds in rows])
     return 0

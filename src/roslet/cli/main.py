@@ -6,6 +6,7 @@ import argparse
 import os
 import signal
 import sys
+from contextlib import suppress
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,7 @@ from roslet.cli.options import (
     INTERRUPTED,
     TERMINATED,
     UNREACHABLE,
-    CommandFailed,
+    CommandError,
     Formatter,
     sentence,
 )
@@ -85,7 +86,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return BROKEN_PIPE
     except KeyboardInterrupt:
         return INTERRUPTED
-    except CommandFailed as error:
+    except CommandError as error:
         return _failed(str(error), error.code)
     except (Unreachable, CallTimeout) as error:
         return _failed(str(error), UNREACHABLE)
@@ -113,10 +114,8 @@ def _run(given: list[str]) -> int:
 
 
 def _failed(text: str, code: int) -> int:
-    try:
+    with suppress(OSError):
         sys.stdout.flush()
-    except OSError:
-        pass
     print("roslet: " + " ".join(text.split("\n")), file=sys.stderr, flush=True)
     return code
 
@@ -125,10 +124,8 @@ def _quit_on_sigterm() -> None:
     def terminated(number: int, frame: FrameType | None) -> None:
         raise Terminated(TERMINATED)
 
-    try:
+    with suppress(ValueError):  # not in the main thread: whoever called us there decides about signals
         signal.signal(signal.SIGTERM, terminated)
-    except ValueError:
-        pass  # not in the main thread: whoever called us there decides about signals
 
 
 if __name__ == "__main__":

@@ -31,7 +31,7 @@ EXIT_CODES = """exit codes:
 """
 
 
-class CommandFailed(RosletError):
+class CommandError(RosletError):
     """The command cannot do what was asked; the text is for people. `code` is the exit code."""
 
     def __init__(self, text: str, code: int = FAILED) -> None:

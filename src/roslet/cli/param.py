@@ -6,7 +6,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from roslet.cli.graph import Graph
-from roslet.cli.options import CommandFailed, Group, full_name
+from roslet.cli.options import CommandError, Group, full_name
 from roslet.errors import Fault
 
 if TYPE_CHECKING:
@@ -80,7 +80,10 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     load.add_argument("file", metavar="FILE", help="- for standard input")
     load.add_argument("namespace", nargs="?", default="/", metavar="NAMESPACE", help="where to set them")
-    load.description = "Set parameters from a file.\n\nA YAML file needs PyYAML (extra `cli` of roslet); a JSON file does not."
+    load.description = (
+        "Set parameters from a file.\n\n"
+        "A YAML file needs PyYAML (extra `cli` of roslet); a JSON file does not."
+    )
 
 
 def run_list(arguments: argparse.Namespace) -> int:
@@ -102,11 +105,11 @@ def run_list(arguments: argparse.Namespace) -> int:
 
 
 def get_parameter(graph: Graph, name: str) -> Any:
-    """A parameter's value. Raises CommandFailed where it is not set."""
+    """A parameter's value. Raises CommandError where it is not set."""
     try:
         return graph.master("getParam", name)
     except Fault:
-        raise CommandFailed(f"parameter {name} is not set") from None
+        raise CommandError(f"parameter {name} is not set") from None
 
 
 def run_get(arguments: argparse.Namespace) -> int:
@@ -117,7 +120,7 @@ def run_get(arguments: argparse.Namespace) -> int:
     with Graph(arguments.network) as graph:
         try:
             value = plain(get_parameter(graph, full_name(arguments.name)))
-        except CommandFailed:
+        except CommandError:
             if arguments.default is None:
                 raise
             value = read_value(arguments.default)
@@ -168,7 +171,7 @@ def _set(graph: Graph, name: str, value: Any) -> None:
     try:
         graph.master("setParam", name, value)
     except Fault as error:
-        raise CommandFailed(f"the master does not set {name}: {error.message}") from None
+        raise CommandError(f"the master does not set {name}: {error.message}") from None
 
 
 def run_delete(arguments: argparse.Namespace) -> int:
@@ -181,7 +184,7 @@ def run_delete(arguments: argparse.Namespace) -> int:
             except Fault:
                 missing.append(name)
     if missing:
-        raise CommandFailed(f"not set: {', '.join(missing)}")
+        raise CommandError(f"not set: {', '.join(missing)}")
     return 0
 
 
@@ -220,7 +223,7 @@ def run_load(arguments: argparse.Namespace) -> int:
     value = read_document(text, name)
     namespace = full_name(arguments.namespace)
     if not isinstance(value, dict) and namespace == "/":
-        raise CommandFailed(f"{name}: expected names and values, not {type(value).__name__}")
+        raise CommandError(f"{name}: expected names and values, not {type(value).__name__}")
     with Graph(arguments.network) as graph:
         if isinstance(value, dict):
             # One by one: setting a namespace as a whole would delete what the file does not name.

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 import math
-from struct import error as StructError
 from struct import pack, unpack
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.options import USAGE, CommandFailed
+from roslet.cli.options import USAGE, CommandError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -78,7 +77,7 @@ def shortest32(value: float) -> float:
         return value
     try:
         bits = pack("<f", value)
-    except (OverflowError, StructError):
+    except OverflowError:
         return value
     exact: float = unpack("<f", bits)[0]
     for digits in (6, 7, 8):
@@ -94,13 +93,13 @@ def shortest32(value: float) -> float:
 def select(message: Any, path: str, style: Style | None = None) -> Any:
     """The plain value at `path`: `pose.position.x`, `ranges[3]`, `points[0:2].x`.
 
-    After a slice the rest of the path is taken of each element. Raises CommandFailed where there is no such value.
+    After a slice the rest of the path is taken of each element. Raises CommandError where there is no such value.
     """
     return _select(message, type(message), 0, steps(path), path, style or Style())
 
 
 def steps(path: str) -> list[str | int | slice]:
-    """The steps of a path. Raises CommandFailed."""
+    """The steps of a path. Raises CommandError."""
     found: list[str | int | slice] = []
     for part in path.strip("./").replace("/", ".").split("."):
         name, *brackets = part.split("[")
@@ -119,7 +118,7 @@ def steps(path: str) -> list[str | int | slice]:
                 else:
                     raise ValueError
         except ValueError:
-            raise CommandFailed(
+            raise CommandError(
                 f"{path!r} is no path; write pose.position.x, ranges[3] or points[0:2].x", USAGE
             ) from None
     return found
@@ -135,12 +134,12 @@ def _select(value: Any, base: Any, kind: int, path: list[Any], whole: str, style
                 if name == step:
                     return _select(getattr(value, entry[0]), entry[1], entry[2], rest, whole, style)
             known = ", ".join(name for name, _ in base._fields_and_types)
-            raise CommandFailed(f"{whole}: {base._type} has no field {step}; it has {known or 'none'}")
+            raise CommandError(f"{whole}: {base._type} has no field {step}; it has {known or 'none'}")
         if not kind and base in ("time", "duration") and step in ("secs", "nsecs"):
             return _select(getattr(value, step), "uint32", 0, rest, whole, style)
-        raise CommandFailed(f"{whole}: {'an array' if kind else 'a ' + str(base)} has no field {step}")
+        raise CommandError(f"{whole}: {'an array' if kind else 'a ' + str(base)} has no field {step}")
     if not kind:
-        raise CommandFailed(f"{whole}: [{step}] of something that is no array")
+        raise CommandError(f"{whole}: [{step}] of something that is no array")
     if isinstance(step, slice):
         if not rest:
             return _field(value[step], base, kind, style)
@@ -148,7 +147,7 @@ def _select(value: Any, base: Any, kind: int, path: list[Any], whole: str, style
     try:
         item = value[step]
     except IndexError:
-        raise CommandFailed(f"{whole}: the array has {len(value)} elements") from None
+        raise CommandError(f"{whole}: the array has {len(value)} elements") from None
     return _select(item.item() if hasattr(item, "item") else item, base, 0, rest, whole, style)
 
 
@@ -187,7 +186,7 @@ def _key(key: Any) -> str:
     return text if text.isidentifier() and text.lower() not in _WORDS else json.dumps(text)
 
 
-_WORDS = ("true", "false", "yes", "no", "on", "off", "null", "y", "n")
+_WORDS = ("true", "false", "yes", "no", "on", "off", "null")
 
 
 def yaml_scalar(value: Any) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.options import USAGE, CommandFailed
+from roslet.cli.options import USAGE, CommandError
 from roslet.errors import InvalidMessage
 
 if TYPE_CHECKING:
@@ -17,46 +17,46 @@ _NUMBERS = ("int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uin
 
 
 def yaml_module() -> ModuleType | None:
-    """PyYAML, where it is installed."""
+    """PyYAML, where it is installed (extra `cli`)."""
+    from importlib import import_module
+
     try:
-        import yaml
+        return import_module("yaml")
     except ImportError:
         return None
-    module: ModuleType = yaml
-    return module
 
 
 def read_value(text: str) -> Any:
-    """The value of one command-line argument. Raises CommandFailed for text that looks like a structure but is none."""
+    """The value of one command-line argument. Raises CommandError for text that looks like a structure but is none."""
     yaml = yaml_module()
     if yaml is not None:
         try:
             value = yaml.safe_load(text)
         except yaml.YAMLError as error:
-            raise CommandFailed(f"not YAML: {text!r}: {_yaml_problem(error)}", USAGE) from None
+            raise CommandError(f"not YAML: {text!r}: {_yaml_problem(error)}", USAGE) from None
         return "" if value is None and not text.strip() else value
     from roslet.node.values import parse_value
 
     value = parse_value(text)
     if value == text and (text.strip()[:1] in ("{", "[") or ": " in text):
-        raise CommandFailed(f"not JSON: {text!r} (YAML needs PyYAML: pip install 'roslet[cli]')", USAGE)
+        raise CommandError(f"not JSON: {text!r} (YAML needs PyYAML: pip install 'roslet[cli]')", USAGE)
     return value
 
 
 def read_document(text: str, name: str) -> Any:
-    """The value that a file holds. Raises CommandFailed, which names the file."""
+    """The value that a file holds. Raises CommandError, which names the file."""
     yaml = yaml_module()
     if yaml is not None:
         try:
             return yaml.safe_load(text)
         except yaml.YAMLError as error:
-            raise CommandFailed(f"{name}: {_yaml_problem(error)}") from None
+            raise CommandError(f"{name}: {_yaml_problem(error)}") from None
     import json
 
     try:
         return json.loads(text)
     except ValueError as error:
-        raise CommandFailed(f"{name}: {error}; a YAML file needs PyYAML: pip install 'roslet[cli]'") from None
+        raise CommandError(f"{name}: {error}; a YAML file needs PyYAML: pip install 'roslet[cli]'") from None
 
 
 def _yaml_problem(error: Exception) -> str:
@@ -69,7 +69,7 @@ def build(kind: type[Message], arguments: Sequence[str], now: Callable[[], Any])
     """A message of class `kind` from command-line arguments.
 
     Each is `field.path:=value`, or YAML: a mapping of fields, or (several, or one that is no mapping) the fields' values in
-    their order. `now` for a time, and `auto` for a header, mean the present time, `now()`. Raises CommandFailed (wrong
+    their order. `now` for a time, and `auto` for a header, mean the present time, `now()`. Raises CommandError (wrong
     usage), InvalidMessage with the value path.
     """
     message = kind()
@@ -111,13 +111,13 @@ def _assign(message: Message, path: str, text: str, now: Callable[[], Any]) -> N
         if not hasattr(target, "_spec"):
             part = {"secs": "secs", "nsecs": "nsecs"}.get(step)
             if part is None or at != len(steps) - 1 or not hasattr(target, part):
-                raise CommandFailed(f"{'.'.join(steps[:at])} has no field {step}", USAGE)
+                raise CommandError(f"{'.'.join(steps[:at])} has no field {step}", USAGE)
             setattr(target, part, _converted(read_value(text), "int64", 0, path, now))
             return
         entry = dict(zip(names(type(target)), target._spec, strict=True)).get(step)
         if entry is None:
             where = ".".join(steps[:at]) or type(message)._type
-            raise CommandFailed(f"{where} has no field {step}; it has {_listed(type(target))}", USAGE)
+            raise CommandError(f"{where} has no field {step}; it has {_listed(type(target))}", USAGE)
         attribute, base, single, _size, _bound = entry
         if at < len(steps) - 1:
             target = getattr(target, attribute)

@@ -1,0 +1,117 @@
+"""`roslet topic echo`."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any
+
+from roslet.cli.options import CommandError, full_name, load_types
+from roslet.cli.output import Live, json_text
+from roslet.cli.render import Style, plain, select, steps, yaml_lines
+from roslet.cli.session import open_node
+from roslet.errors import DefinitionError, MalformedMessage, RosletError
+
+if TYPE_CHECKING:
+    import argparse
+
+    from roslet.node.topics import RawMessage
+    from roslet.wire.message import Message
+
+
+class Reader:
+    """Raw messages to message objects, by the definition that is installed or else by the publisher's own."""
+
+    def __init__(self) -> None:
+        self._classes: dict[tuple[str, str], type[Message]] = {}
+
+    def read(self, raw: RawMessage) -> Message:
+        """Raises CommandError where there is no definition, MalformedMessage."""
+        key = (raw.type, raw.md5sum)
+        kind = self._classes.get(key)
+        if kind is None:
+            kind = self._classes[key] = self._find(raw)
+        return kind.deserialize(raw.data)
+
+    def _find(self, raw: RawMessage) -> type[Message]:
+        from roslet.gen.runtime import message_class, message_class_of
+
+        problem = ""
+        try:
+            kind = message_class("ros1", raw.type)
+            if raw.md5sum in ("*", kind._md5sum):
+                return kind
+            problem = f"the definition installed here has md5sum {kind._md5sum}, the publisher's {raw.md5sum}"
+        except DefinitionError as error:
+            problem = str(error)
+        if raw.definition.strip() or not problem:
+            try:
+                return message_class_of(raw.type, raw.definition)
+            except RosletError as error:
+                problem = f"the definition that its publisher sent is wrong: {error}"
+        raise CommandError(f"cannot show {raw.type}: {problem}")
+
+
+def echo(arguments: argparse.Namespace) -> int:
+    """Print messages until there were enough of them, time is up, or Ctrl-C."""
+    load_types(arguments)
+    topic = full_name(arguments.topic)
+    if arguments.field:
+        steps(arguments.field)  # a wrong path is reported before the first message
+    style = Style(arguments.noarr, arguments.nostr, arguments.truncate)
+    reader = Reader()
+    live = Live() if arguments.clear else None
+    shown = 0
+    left = arguments.count
+    done = False
+    latest = begin = time.monotonic()
+
+    def show(raw: Any) -> None:
+        nonlocal shown, done, latest
+        if done:
+            return
+        latest = time.monotonic()
+        try:
+            message = reader.read(raw)
+        except MalformedMessage as error:
+            raise CommandError(f"{topic}: a message that is no {raw.type}: {error}") from None
+        value = select(message, arguments.field, style) if arguments.field else plain(message, style)
+        if arguments.json:
+            print(json_text(value), flush=True)
+        else:
+            text = "\n".join(yaml_lines(value))
+            if live is not None and live.in_place:
+                live.show(text)
+            else:
+                print(f"{text}\n---", flush=True)
+        shown += 1
+        done = left is not None and shown >= left
+
+    def over() -> bool:
+        now = time.monotonic()
+        return (
+            done
+            or (arguments.limit is not None and now - begin >= arguments.limit)
+            or (arguments.timeout is not None and now - latest >= arguments.timeout)
+        )
+
+    with open_node(arguments, "echo") as node:
+        subscription = node.subscribe(topic, "*", show)
+        # The loop looks at the clock at least this often, so that a limit ends a silent topic too.
+        while not over() and not node.is_shutdown:
+            node.spin_until(over, _soonest(arguments, begin, latest))
+        publishers = subscription.publisher_count
+    if arguments.timeout is not None and not done and not shown:
+        who = f"{publishers} publishers" if publishers != 1 else "1 publisher"
+        raise CommandError(f"{topic}: no message within {arguments.timeout:g} s ({who})")
+    return 0 if left is None or done or arguments.limit is not None else 1
+
+
+def _soonest(arguments: argparse.Namespace, begin: float, latest: float) -> float | None:
+    """Seconds until one of the limits may be over; None where there is none."""
+    now = time.monotonic()
+    ends = []
+    if arguments.limit is not None:
+        ends.append(begin + arguments.limit - now)
+    if arguments.timeout is not None:
+        ends.append(latest + arguments.timeout - now)
+    return max(0.001, min(ends)) if ends else None

@@ -1,0 +1,213 @@
+"""`roslet service`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from roslet.cli.graph import Graph
+from roslet.cli.options import USAGE, CommandError, Group, full_name, load_types, positive
+from roslet.cli.output import emit_json, note, table
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Declare the commands."""
+    group = Group(parser)
+
+    list_ = group.command(
+        "list",
+        run_list,
+        "list services",
+        "roslet service list\nroslet service list --types-too /camera",
+        "network json",
+    )
+    list_.add_argument("namespace", nargs="?", default="/", metavar="NAMESPACE", help="those below it only")
+    list_.add_argument("-q", "--names", action="store_true", help="names only, one a line")
+    list_.add_argument(
+        "-t",
+        "--types-too",
+        action="store_true",
+        help="ask each server for its type (the master does not know)",
+    )
+
+    info = group.command(
+        "info",
+        run_info,
+        "show a service's type, node and arguments",
+        "roslet service info /add",
+        "network types json",
+    )
+    info.add_argument("service", metavar="SERVICE")
+
+    type_ = group.command(
+        "type", run_type, "print a service's type", "roslet service type /add", "network json"
+    )
+    type_.add_argument("service", metavar="SERVICE")
+
+    call = group.command(
+        "call",
+        run_call,
+        "call a service and print its response",
+        "roslet service call /add a:=1 b:=2\nroslet service call /add '{a: 1, b: 2}' --json\n"
+        "roslet service call /enable true",
+        "network types json",
+    )
+    call.add_argument("service", metavar="SERVICE")
+    call.add_argument(
+        "values",
+        nargs="*",
+        metavar="VALUE",
+        help="field.path:=value, a mapping, or the fields' values in order",
+    )
+    call.add_argument("--type", metavar="TYPE", help="package/Name; default: what the server says")
+    call.add_argument(
+        "--timeout",
+        type=positive,
+        default=None,
+        metavar="SECONDS",
+        help="give up (exit code 3) after so long",
+    )
+    call.add_argument(
+        "--wait",
+        type=positive,
+        default=None,
+        metavar="SECONDS",
+        help="wait so long for the service to be there",
+    )
+
+
+def run_list(arguments: argparse.Namespace) -> int:
+    """`roslet service list`."""
+    namespace = full_name(arguments.namespace).rstrip("/") + "/"
+    with Graph(arguments.network) as graph:
+        names = [name for name in sorted(graph.services) if name.startswith(namespace)]
+        rows: list[dict[str, Any]] = []
+        for name in names:
+            row: dict[str, Any] = {"service": name, "nodes": graph.services[name]}
+            if arguments.types_too:
+                try:
+                    row["type"] = graph.probe_service(name).get("type", "*")
+                except CommandError:
+                    row["type"] = None
+            rows.append(row)
+    if arguments.json:
+        emit_json(rows)
+    elif arguments.names:
+        for name in names:
+            print(name)
+    elif arguments.types_too:
+        table(
+            ("SERVICE", "TYPE", "NODE"),
+            [(row["service"], row["type"] or "no answer", ", ".join(row["nodes"])) for row in rows],
+        )
+    else:
+        table(("SERVICE", "NODE"), [(row["service"], ", ".join(row["nodes"])) for row in rows])
+    if not rows and not arguments.json:
+        note("no services" if namespace == "/" else f"no services below {namespace}")
+    return 0
+
+
+def run_info(arguments: argparse.Namespace) -> int:
+    """`roslet service info`."""
+    from roslet.cli.interface import definition_lines
+    from roslet.errors import DefinitionError
+    from roslet.idl import ROS1, Registry
+
+    name = full_name(arguments.service)
+    with Graph(arguments.network) as graph:
+        fields = graph.probe_service(name)
+        nodes = graph.services.get(name, [])
+    kind = fields.get("type", "*")
+    described: dict[str, Any] = {
+        "service": name,
+        "type": kind,
+        "md5sum": fields.get("md5sum", "*"),
+        "nodes": nodes,
+        "uri": fields["uri"],
+        "request": None,
+        "response": None,
+    }
+    registry = Registry(ROS1)
+    for path in arguments.types:
+        registry.load(path)
+    try:
+        service = registry.service(kind)
+        for part, message in (("request", service.request), ("response", service.response)):
+            described[part] = list(definition_lines(message, None))
+    except DefinitionError:
+        pass  # not installed here: the server's answer has a name and a sum, no definition
+    if arguments.json:
+        emit_json(described)
+        return 0
+    print(f"Service: {name}")
+    print(f"Type:    {kind}")
+    print(f"MD5:     {described['md5sum']}")
+    print(f"Node:    {', '.join(nodes) or '-'}")
+    print(f"URI:     {described['uri']}")
+    for title, part in (("Request", "request"), ("Response", "response")):
+        lines = described[part]
+        print()
+        if lines is None:
+            print(f"{title}: {kind} is not installed here; load it with --types")
+        else:
+            print(f"{title}: nothing" if not lines else f"{title}:")
+            for line in lines:
+                print("  " + line)
+    return 0
+
+
+def run_type(arguments: argparse.Namespace) -> int:
+    """`roslet service type`."""
+    name = full_name(arguments.service)
+    with Graph(arguments.network) as graph:
+        kind = graph.probe_service(name).get("type", "*")
+    if arguments.json:
+        emit_json({"service": name, "type": kind})
+    else:
+        print(kind)
+    return 0
+
+
+def run_call(arguments: argparse.Namespace) -> int:
+    """`roslet service call`."""
+    from roslet.cli.render import plain, yaml_lines
+    from roslet.cli.session import open_node
+    from roslet.cli.values import build
+    from roslet.errors import UnknownType
+
+    load_types(arguments)
+    name = full_name(arguments.service)
+    with Graph(arguments.network) as graph:
+        if arguments.wait is not None:
+            _wait(graph, name, arguments.wait)
+        kind = arguments.type or graph.probe_service(name).get("type", "*")
+    if kind == "*":
+        raise CommandError(f"the server of {name} does not say its type; give --type", USAGE)
+    from roslet.gen.runtime import service_class
+
+    try:
+        service_type = service_class("ros1", kind)
+    except UnknownType as error:
+        raise CommandError(f"{error}; load it with --types DIR") from None
+    with open_node(arguments, "call") as node:
+        request = build(service_type.Request, arguments.values, node.now)
+        response = node.client(name, service_type).call(request, timeout=arguments.timeout)
+    value = plain(response)
+    if arguments.json:
+        emit_json(value)
+    else:
+        for line in yaml_lines(value) if value else ():
+            print(line)
+    return 0
+
+
+def _wait(graph: Graph, name: str, seconds: float) -> None:
+    import time
+
+    end = time.monotonic() + seconds
+    while graph.lookup_service(name) is None:
+        if time.monotonic() >= end:
+            raise CommandError(f"there is no service {name} within {seconds:g} s", 3)
+        time.sleep(0.05)
