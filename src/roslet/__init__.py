@@ -1,6 +1,30 @@
-"""A ROS node where ROS itself cannot go."""
+"""A ROS node where ROS itself cannot go.
 
-from roslet.errors import RosletError
+    with roslet.Node("talker", network="ros1://") as node:
+        node.publisher("chatter", "std_msgs/String").publish(data="hello")
+
+`Node` makes everything else; `load` reads your own definitions; message classes are in `roslet.msgs`.
+"""
+
+from roslet.errors import (
+    CallTimeout,
+    DefinitionError,
+    Fault,
+    HandshakeRefused,
+    InvalidMessage,
+    InvalidName,
+    MalformedMessage,
+    NodeClosed,
+    ParameterNotSet,
+    ProtocolError,
+    RecursiveType,
+    RemoteError,
+    RosletError,
+    ServiceFailed,
+    UnknownType,
+    Unreachable,
+    Unsupported,
+)
 
 TYPE_CHECKING = False  # MicroPython, which imports this too, has neither typing nor __future__
 if TYPE_CHECKING:
@@ -11,23 +35,40 @@ if TYPE_CHECKING:
     from roslet.node.node import Node
     from roslet.node.qos import QoS
     from roslet.node.services import Client, Service
-    from roslet.node.topics import Publisher, Subscription
+    from roslet.node.topics import Publisher, RawMessage, Subscription
     from roslet.wire.time import Duration, Time
 
 __version__ = "0.1.0.dev0"
 
 __all__ = [
+    "CallTimeout",
     "Client",
+    "DefinitionError",
     "Duration",
+    "Fault",
+    "HandshakeRefused",
+    "InvalidMessage",
+    "InvalidName",
+    "MalformedMessage",
     "Node",
+    "NodeClosed",
+    "ParameterNotSet",
+    "ProtocolError",
     "Publisher",
     "QoS",
     "Rate",
+    "RawMessage",
+    "RecursiveType",
+    "RemoteError",
     "RosletError",
     "Service",
+    "ServiceFailed",
     "Subscription",
     "Time",
     "Timer",
+    "UnknownType",
+    "Unreachable",
+    "Unsupported",
     "load",
 ]
 
@@ -38,6 +79,7 @@ _HOMES = {
     "Publisher": "roslet.node.topics",
     "QoS": "roslet.node.qos",
     "Rate": "roslet.node.clock",
+    "RawMessage": "roslet.node.topics",
     "Service": "roslet.node.services",
     "Subscription": "roslet.node.topics",
     "Time": "roslet.wire.time",
@@ -56,3 +98,8 @@ def __getattr__(name: str) -> "Any":
     value = getattr(import_module(home), name)
     globals()[name] = value
     return value
+
+
+def __dir__() -> list[str]:
+    """What there is, imported or not."""
+    return sorted([*globals(), *_HOMES])

@@ -7,6 +7,7 @@ whose code is inlined in the classes that hold it, mostly pays for none.
 
 from __future__ import annotations
 
+from roslet.errors import DefinitionError
 from roslet.gen import python
 from roslet.layout import CDR, ROS1, layout
 from roslet.layout.operations import Layout
@@ -100,16 +101,17 @@ def load(path: str | PathLike[str], dialect: Dialect | None = None) -> Types:
 
     They come before all others of their names in this process, in both dialects; each is parsed when it is
     asked for. What is returned has the packages as attributes (`types.my_msgs.msg.Foo`), with the classes of
-    `dialect`: by default that of the package's build tool (catkin: ROS 1), ROS 2 where none is named. A node
-    takes either's class and uses that of its own network. Raises DefinitionError where there is no
-    definition.
+    `dialect`: by default that of the package's build tool (catkin: ROS 1); where no package.xml names one,
+    ROS 1 if a definition is right in ROS 1 only (`Header`, `time`), else ROS 2. A node takes either's class
+    and uses that of its own network. Raises DefinitionError where there is no definition.
     """
     names: list[TypeName] = []
     both: tuple[Dialect, ...] = ("ros1", "ros2")
     for one in both:
         names += registry(one).load(path)
         _forget(one, names)
-    return Types(dialect or _guess(str(path)), sorted(set(names)))
+    names = sorted(set(names))
+    return Types(dialect or _guess(str(path), names), names)
 
 
 def message_class_of(name: str, definition: str) -> type[Message]:
@@ -123,7 +125,7 @@ def message_class_of(name: str, definition: str) -> type[Message]:
     return message_class("ros1", name)
 
 
-def _guess(path: str) -> Dialect:
+def _guess(path: str, names: list[TypeName]) -> Dialect:
     import os
 
     for folder, folders, files in os.walk(path):
@@ -131,7 +133,16 @@ def _guess(path: str) -> Dialect:
         if "package.xml" in files:
             with open(os.path.join(folder, "package.xml"), encoding="utf-8", errors="replace") as file:
                 return "ros1" if "catkin" in file.read() else "ros2"
-    return "ros2"
+    only_ros1 = any(not _is_right("ros2", name) and _is_right("ros1", name) for name in names)
+    return "ros1" if only_ros1 else "ros2"
+
+
+def _is_right(dialect: Dialect, name: TypeName) -> bool:
+    try:
+        registry(dialect).interface(name)
+    except DefinitionError:
+        return False
+    return True
 
 
 def _forget(dialect: Dialect, names: list[TypeName]) -> None:

@@ -110,10 +110,13 @@ class _Loader:
             if not name.startswith("_"):
                 try:
                     made = runtime.interface_class(self.dialect, "%s/%s/%s" % (self.package, kind, name))
-                except (UnknownType, InvalidName):
+                except InvalidName:
                     made = None
                 except DefinitionError as error:
-                    raise ImportError(str(error)) from error
+                    # An unknown type that a file names is that file's fault, not a wrong import.
+                    if error.file or not isinstance(error, UnknownType):
+                        raise ImportError(str(error)) from error
+                    made = None
                 if made is not None:
                     setattr(module, name, made)
                     return made

@@ -200,6 +200,7 @@ class Node:
         return Timer(self.clock, period, callback, once)
 
     def rate(self, hz: float) -> Rate:
+        """Keeps a loop at `hz` turns a second: call its `sleep()` once a turn. Raises ValueError unless `hz` is positive."""
         return Rate(self.clock, self.sleep, hz)
 
     def sleep(self, seconds: float) -> None:
@@ -234,6 +235,7 @@ class Node:
             raise ParameterNotSet(error.message) from None
 
     def has_parameter(self, name: str) -> bool:
+        """Whether there is a parameter, or a namespace of parameters, of this name."""
         return bool(self.call_master("hasParam", self.resolve(name)))
 
     def search_parameter(self, name: str) -> str | None:
@@ -244,6 +246,7 @@ class Node:
             return None
 
     def parameter_names(self) -> list[str]:
+        """The full names of all parameters of the master."""
         return [str(name) for name in self.call_master("getParamNames")]
 
     def on_parameter(self, name: str, callback: Callable[[Any], object]) -> Any:
@@ -301,6 +304,7 @@ class Node:
         return self.call_master_async(method, *arguments).result(timeout)
 
     def call_master_async(self, method: str, *arguments: Any) -> Future[Any]:
+        """`call_master` without waiting: a Future of the value."""
         self._check_open()
         future: Future[Any] = Future(self.reactor, f"{method} of the master at {self._engine.master_uri}")
         with self.reactor.lock:
@@ -323,6 +327,7 @@ class Node:
 
     @property
     def master_uri(self) -> str:
+        """The master, as http://host:port."""
         return self._engine.master_uri
 
     @property
@@ -347,9 +352,11 @@ class Node:
         return sorted({name for part in self.system_state() for names in part.values() for name in names})
 
     def services(self) -> list[str]:
+        """Every service the master knows, sorted."""
         return sorted(self.system_state()[2])
 
     def topic_type(self, topic: str) -> str | None:
+        """The type of a topic; None where the master does not know it."""
         return self.topics().get(self.resolve(topic))
 
     def lookup_node(self, name: str) -> str | None:
@@ -564,14 +571,14 @@ def _qos(qos: QoS | int | None) -> QoS:
 
 
 def _message_class(kind: Any) -> Any:
-    """The ROS 1 class of a message type given by name or class."""
+    """The ROS 1 class of a message type given by name or class; of a ROS 2 class it is that of the same name."""
     if isinstance(kind, str):
         from roslet.gen.runtime import message_class
 
         return message_class("ros1", kind)
-    if not hasattr(kind, "_md5sum"):
-        raise Unsupported(f"{kind!r} is no ROS 1 message class; this node is on a ROS 1 network")
-    return kind
+    if not hasattr(kind, "_spec") and not hasattr(kind, "_md5sum"):
+        raise Unsupported(f"{kind!r} is no message class")
+    return _of_ros1(kind)
 
 
 def _service_class(kind: Any) -> Any:
@@ -580,8 +587,16 @@ def _service_class(kind: Any) -> Any:
 
         return service_class("ros1", kind)
     if not hasattr(kind, "_md5sum") or not hasattr(kind, "Request"):
-        raise Unsupported(f"{kind!r} is no ROS 1 service class; this node is on a ROS 1 network")
-    return kind
+        raise Unsupported(f"{kind!r} is no service class")
+    return _of_ros1(kind)
+
+
+def _of_ros1(kind: Any) -> Any:
+    if kind._md5sum:
+        return kind
+    from roslet.gen.runtime import for_dialect
+
+    return for_dialect("ros1", kind)
 
 
 @atexit.register

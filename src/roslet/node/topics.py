@@ -85,11 +85,14 @@ class Publisher:
 
     @property
     def subscriber_count(self) -> int:
+        """Subscribers connected now: over TCPROS and UDPROS, and those of this node."""
         entry = self._entry
         return 0 if entry is None else len(entry.links) + len(entry.senders) + len(self._local)
 
     @property
     def statistics(self) -> dict[str, int]:
+        """Since the publisher was made: `messages` published, `dropped` (messages for slow or lost subscribers, one count
+        for each subscriber); now: `subscribers`."""
         entry = self._entry
         dropped = 0 if entry is None else entry.dropped + sum(link.queue.dropped for link in entry.links)
         return {"messages": self.messages, "dropped": dropped, "subscribers": self.subscriber_count}
@@ -158,7 +161,8 @@ class Publisher:
         ):
             converted: Message = self.type.deserialize(message.serialize())
             return converted
-        raise TypeError(f"{self.topic} carries {self.type._type}, not {type(message).__name__}")
+        given = getattr(message, "_type", type(message).__name__)
+        raise TypeError(f"{self.topic} carries {self.type._type}, not {given}")
 
     def _grow(self, size: int) -> None:
         self._view.release()
@@ -464,6 +468,7 @@ class Subscription:
 
     @property
     def publisher_count(self) -> int:
+        """Publishers connected now, this node's own included."""
         entry = self._entry
         if entry is None:
             return 0
@@ -473,6 +478,8 @@ class Subscription:
 
     @property
     def statistics(self) -> dict[str, int]:
+        """Since the subscription was made: `messages` received, `dropped` because nobody took them in time, `malformed`;
+        now: `publishers`."""
         return {
             "messages": self.messages,
             "dropped": self.dropped,
