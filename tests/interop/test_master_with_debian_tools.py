@@ -23,12 +23,12 @@ rate = rospy.Rate(50)
 print("ready", rospy.get_name(), rospy.get_param("~greeting", "hello"), flush=True)
 count = 0
 while not rospy.is_shutdown():
-    publisher.publish("%s %d" % (rospy.get_param_cached("/word", "hello"), count))
-    count += 1
     try:
+        publisher.publish("%s %d" % (rospy.get_param_cached("/word", "hello"), count))
+        count += 1
         rate.sleep()
-    except rospy.ROSInterruptException:
-        pass
+    except rospy.ROSException:
+        pass  # shut down since the loop looked
 print("ended", flush=True)
 """
 

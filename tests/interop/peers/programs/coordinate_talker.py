@@ -15,11 +15,11 @@ def main():
         message.y += 10.25
         message.z += 3.125
         message.time = rospy.Time.now()
-        chatter.publish(message)
         try:
+            chatter.publish(message)
             rate.sleep()
-        except rospy.ROSInterruptException:
-            break
+        except rospy.ROSException:
+            break  # shut down since the loop looked
 
 
 main()

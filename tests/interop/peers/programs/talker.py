@@ -20,5 +20,5 @@ def talker():
 if __name__ == "__main__":
     try:
         talker()
-    except rospy.ROSInterruptException:
-        print("talker was interrupted in its sleep", flush=True)
+    except rospy.ROSException:
+        print("talker was interrupted in its sleep or while it published", flush=True)
