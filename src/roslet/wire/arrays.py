@@ -140,6 +140,8 @@ class Numbers:
         """An ndarray of another dtype, converted if every element keeps its value (floats: up to
         rounding)."""
         numpy = self.numpy
+        if not value.size:  # numpy.array([]) is of float64
+            return value.astype(self.tag)
         kind = value.dtype.kind
         if self.code in "fd":
             if kind not in "fiu":
@@ -151,8 +153,6 @@ class Numbers:
             return converted
         if kind not in ("biu" if self.primitive == "bool" else "iu"):
             raise TypeError("expected an array of %s, got %s" % (self.primitive, value.dtype))
-        if not value.size:
-            return value.astype(self.tag)
         low, high = int(value.min()), int(value.max())
         if self.primitive == "bool":
             least, most = 0, 1

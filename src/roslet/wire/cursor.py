@@ -55,6 +55,14 @@ def _type_name(value: "Any") -> str:
     return type(value).__name__
 
 
+def _iterable(value: "Any") -> bool:
+    try:
+        iter(value)
+    except TypeError:
+        return False
+    return True
+
+
 class Writer:
     """Appends a message's bytes to `data`. `largest` is the largest alignment: 1 in ROS 1, 8 in CDR, 4 in CDR
     version 2; `terminator` the number of NULs after a string; positions count from the writer's start.
@@ -188,7 +196,7 @@ class Writer:
             length = len(data) // _SIZES[base]
         else:
             if not isinstance(value, (list, tuple)):
-                if isinstance(value, (str, bytes, bytearray, dict)) or not hasattr(value, "__iter__"):
+                if isinstance(value, (str, bytes, bytearray, dict)) or not _iterable(value):
                     raise InvalidMessage(
                         "expected a list, got %s %s" % (_type_name(value), _shown(value)), path
                     )
@@ -214,7 +222,7 @@ class Writer:
         try:
             return octets(value) if primitive == "uint8" else numbers(primitive).raw(value)
         except FAILURES as error:
-            if not isinstance(value, (str, bytes, bytearray, dict)) and hasattr(value, "__iter__"):
+            if not isinstance(value, (str, bytes, bytearray, dict)) and _iterable(value):
                 probe = Writer("<", 1, 0)
                 for at, element in enumerate(value):
                     probe.number(element, primitive, "%s[%d]" % (path, at))
@@ -261,8 +269,8 @@ class Reader:
         self.terminator = terminator
 
     def malformed(self, message: str, path: str) -> MalformedMessage:
-        """An error at the present position."""
-        return MalformedMessage(message, self.position - self.start, path)
+        """An error at the present position, or at the end where padding would lie behind it."""
+        return MalformedMessage(message, min(self.position, self.end) - self.start, path)
 
     def take(self, size: int, path: str) -> int:
         """Advance by `size` bytes; the position before. Raises where there are fewer."""
