@@ -1,0 +1,78 @@
+"""Publishes sensor_msgs/Image at 10 Hz on `image`: a test picture that moves.
+
+roslet master &
+python image_viewer.py &
+python image_publisher.py
+"""
+
+from __future__ import annotations
+
+import argparse
+import colorsys
+import json
+import sys
+import time
+
+import roslet
+from roslet.msgs.ros1.sensor_msgs.msg import Image
+
+
+def picture(number: int, width: int, height: int) -> bytes:
+    """Picture `number` as rgb8 rows: slanted bands of all colours, which move by four pixels a picture."""
+    band = bytearray()
+    for at in range(width):
+        band += bytes(round(255 * part) for part in colorsys.hsv_to_rgb(at / width, 1.0, 1.0))
+    ring = bytes(band * 2)
+    rows = []
+    for y in range(height):
+        begin = 3 * ((4 * number + y) % width)
+        rows.append(ring[begin : begin + 3 * width])
+    return b"".join(rows)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="A moving test picture on the topic image.")
+    parser.add_argument(
+        "--network", default="ros1://", help="default: ros1://, the master of $ROS_MASTER_URI"
+    )
+    parser.add_argument("--rate", type=float, default=10.0, help="pictures a second (default 10)")
+    parser.add_argument("--count", type=int, default=0, help="end after so many pictures (default 0: never)")
+    parser.add_argument("--width", type=int, default=320)
+    parser.add_argument("--height", type=int, default=240)
+    parser.add_argument("--json", action="store_true", help="report every second, in JSON lines")
+    arguments = parser.parse_args()
+    width, height = arguments.width, arguments.height
+
+    with roslet.Node("camera", network=arguments.network) as node:
+        image = node.publisher("image", Image)
+        image.wait_for_subscribers(timeout=10.0)
+        message = Image(height=height, width=width, encoding="rgb8", step=3 * width)
+        message.header.frame_id = "camera"
+        rate = node.rate(arguments.rate)
+        number = 0
+
+        def report(final: bool) -> None:
+            if arguments.json:
+                print(json.dumps({"sent": number, "final": final}), flush=True)
+            elif final:
+                print(f"sent {number} pictures", flush=True)
+
+        next_report = time.monotonic() + 1.0
+        try:
+            while not node.is_shutdown and (not arguments.count or number < arguments.count):
+                number += 1  # publishing writes the same number into header.seq
+                message.header.stamp = node.now()
+                message.data = picture(number, width, height)
+                image.publish(message)
+                rate.sleep()
+                if time.monotonic() >= next_report:
+                    next_report += 1.0
+                    report(final=False)
+        except KeyboardInterrupt:
+            pass
+        report(final=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,136 @@
+"""The example programs as processes: started, read, ended."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import threading
+from typing import IO, TYPE_CHECKING, Any
+
+import roslet
+from roslet.cli.options import CommandError
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+# Seconds for a process to end by itself after an interrupt, before it is killed.
+PATIENCE = 3.0
+# Lines of a failed program's standard error that are shown.
+TAIL = 12
+
+
+def folder() -> pathlib.Path:
+    """Where the example programs are: in the installed package, or beside the sources. Raises CommandError."""
+    package = pathlib.Path(roslet.__file__).resolve().parent
+    for place in (package / "examples", package.parent.parent / "examples"):
+        if (place / "coordinate_talker.py").is_file():
+            return place
+    raise CommandError("the example programs are not there: neither in the package nor in a checkout")
+
+
+class Program:
+    """One example program. `figures` is the latest of the JSON lines that it prints."""
+
+    def __init__(self, name: str, arguments: list[str], environment: dict[str, str]) -> None:
+        self.name = name
+        self.figures: dict[str, Any] = {}
+        self._errors: list[str] = []
+        self.process = subprocess.Popen(
+            [sys.executable, str(folder() / name), *arguments],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env=environment,
+            encoding="utf-8",
+            errors="replace",
+        )
+        self._readers = [
+            threading.Thread(target=self._read, args=(self.process.stdout,), daemon=True),
+            threading.Thread(target=self._read_errors, args=(self.process.stderr,), daemon=True),
+        ]
+        for reader in self._readers:
+            reader.start()
+
+    def _read(self, stream: IO[str]) -> None:
+        for line in stream:
+            try:
+                figures = json.loads(line)
+            except ValueError:
+                continue  # a line for people
+            if isinstance(figures, dict):
+                self.figures = figures
+
+    def _read_errors(self, stream: IO[str]) -> None:
+        for line in stream:
+            self._errors.append(line.rstrip())
+            del self._errors[:-TAIL]
+
+    @property
+    def running(self) -> bool:
+        """Whether the process still runs."""
+        return self.process.poll() is None
+
+    def finish(self, seconds: float) -> str:
+        """Wait until the program ends by itself; what was wrong with it, "" where nothing was."""
+        try:
+            code = self.process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            self.end()
+            return f"{self.name} did not end by itself"
+        for reader in self._readers:
+            reader.join(PATIENCE)
+        if code:
+            last = f": {self._errors[-1]}" if self._errors else ""
+            return f"{self.name} ended with exit code {code}{last}"
+        if not self.figures.get("final"):
+            return f"{self.name} ended without its last report"
+        return ""
+
+    def end(self) -> None:
+        """End the process, whatever it does."""
+        if self.running:
+            self.process.send_signal(signal.SIGINT)
+            try:
+                self.process.wait(PATIENCE)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait()
+
+
+class Programs:
+    """Several programs that end together, on one network: leaving the block ends those that still run."""
+
+    def __init__(self, network: str) -> None:
+        self.network = network
+        self.all: list[Program] = []
+        source = str(pathlib.Path(roslet.__file__).resolve().parent.parent)
+        path = os.environ.get("PYTHONPATH")
+        # The programs get this roslet, installed or not.
+        self._environment = {
+            **os.environ,
+            "PYTHONPATH": f"{source}{os.pathsep}{path}" if path else source,
+            "ROS_IP": "127.0.0.1",
+            "PYTHONUNBUFFERED": "1",
+        }
+        self._environment.pop("ROS_HOSTNAME", None)
+        self._environment.pop("ROS_NAMESPACE", None)
+
+    def start(self, name: str, *arguments: object) -> Program:
+        """Start one of the example programs; its network and --json are given to it."""
+        given = [str(argument) for argument in arguments]
+        program = Program(name, ["--network", self.network, "--json", *given], self._environment)
+        self.all.append(program)
+        return program
+
+    def __enter__(self) -> Programs:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for program in self.all:
+            program.end()
