@@ -30,7 +30,9 @@ def _fields_agree(store: Any, registry: Registry, name: str) -> bool:
     if [field.name for field in message.fields] != [field[0] for field in store.fielddefs[name][1]]:
         return False
     nested = [field.type.message for field in message.fields if field.type.message is not None]
-    return all(str(inner) in store.fielddefs and _fields_agree(store, registry, str(inner)) for inner in nested)
+    return all(
+        str(inner) in store.fielddefs and _fields_agree(store, registry, str(inner)) for inner in nested
+    )
 
 
 def _build(store: Any, name: str, value: dict[str, Any]) -> Any:

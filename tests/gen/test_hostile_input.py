@@ -113,7 +113,10 @@ def test_a_million_hostile_bytes_take_no_longer_than_good_ones() -> None:
 
 
 def test_elements_without_bytes_are_bounded() -> None:
-    with classes("ros1", {"pkg/Nothing": "", "pkg/Holder": "Nothing[] many\nNothing[3] three\n"}) as (_, holder):
+    with classes("ros1", {"pkg/Nothing": "", "pkg/Holder": "Nothing[] many\nNothing[3] three\n"}) as (
+        _,
+        holder,
+    ):
         assert len(holder.deserialize(b"\x00\x04\x00\x00").many) == 1024
         assert len(holder.deserialize(b"\x00\x00\x00\x00").three) == 3
         with pytest.raises(MalformedMessage) as caught:
@@ -141,7 +144,11 @@ def test_the_fuzz_target_passes_its_smoke_run() -> None:
 
     program = pathlib.Path(__file__).resolve().parents[2] / "fuzz" / "fuzz_messages.py"
     done = subprocess.run(
-        [sys.executable, str(program), "--smoke", "300"], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, str(program), "--smoke", "300"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
     assert "300" in done.stdout

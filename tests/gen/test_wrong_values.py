@@ -20,7 +20,8 @@ POSES = {
     "uint8[4] id\nstring[] words\nuint64 large\n",
 }
 ROS2_POSES = {
-    name: text.replace("Quaternion o", "pkg/Quaternion o").replace("Pose[", "pkg/Pose[") for name, text in POSES.items()
+    name: text.replace("Quaternion o", "pkg/Quaternion o").replace("Pose[", "pkg/Pose[")
+    for name, text in POSES.items()
 }
 
 
@@ -85,7 +86,9 @@ def test_a_wrong_element_is_named(poses: Any) -> None:
         ("large", 1.0, "large"),
     ],
 )
-def test_a_value_that_the_field_cannot_hold_is_refused(poses: Any, field: str, value: object, path: str) -> None:
+def test_a_value_that_the_field_cannot_hold_is_refused(
+    poses: Any, field: str, value: object, path: str
+) -> None:
     setattr(poses, field, value)
     assert path_of(poses)[0] == path
 
@@ -125,7 +128,9 @@ def test_a_value_that_the_field_cannot_hold_is_refused(poses: Any, field: str, v
         ("large", numpy.uint64(5), 5),
     ],
 )
-def test_any_sensible_spelling_of_a_value_is_accepted(poses: Any, field: str, value: object, like: object) -> None:
+def test_any_sensible_spelling_of_a_value_is_accepted(
+    poses: Any, field: str, value: object, like: object
+) -> None:
     setattr(poses, field, value)
     kind = type(poses)
     data = poses.serialize()

@@ -165,7 +165,16 @@ def test_random_definitions_have_the_sizes_of_their_longest_messages() -> None:
     from definitions import classes
 
     chooser = random.Random(2)
-    parts = ["uint8", "uint16", "uint32", "float64", "string<=5", "float32[<=3]", "uint8[<=3]", "string<=2[<=2]"]
+    parts = [
+        "uint8",
+        "uint16",
+        "uint32",
+        "float64",
+        "string<=5",
+        "float32[<=3]",
+        "uint8[<=3]",
+        "string<=2[<=2]",
+    ]
     for _ in range(60):
         fields = [f"{chooser.choice(parts)} f{at}\n" for at in range(chooser.randint(1, 7))]
         with classes("ros2", {"pkg/Thing": "".join(fields)}) as (kind,):

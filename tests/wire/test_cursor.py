@@ -79,7 +79,8 @@ def test_ros1_bytes_are_those_of_the_description() -> None:
 
 
 @pytest.mark.parametrize(
-    "representation, data", [(cdr.CDR_LE, LITTLE_BYTES), (cdr.CDR_BE, BIG_BYTES), (cdr.CDR2_LE, LITTLE2_BYTES)]
+    "representation, data",
+    [(cdr.CDR_LE, LITTLE_BYTES), (cdr.CDR_BE, BIG_BYTES), (cdr.CDR2_LE, LITTLE2_BYTES)],
 )
 def test_cdr_bytes_are_those_of_the_specification(representation: int, data: bytes) -> None:
     assert bytes(cdr.write(outer(), representation)) == data

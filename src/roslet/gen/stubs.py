@@ -178,3 +178,10 @@ def write_bundled_stubs(directory: str | os.PathLike[str]) -> list[str]:
             if write_if_changed(full, text):
                 changed.append(full)
     return sorted(changed)
+
+
+if __name__ == "__main__":
+    import sys
+
+    for changed_path in write_bundled_stubs(sys.argv[1]):
+        print(changed_path)

@@ -179,7 +179,9 @@ def _check_range(values: "Any", code: str, size: int) -> None:
     """What MicroPython's struct leaves out: it keeps the low bits of an integer that is too large."""
     if code in "fd":
         return
-    low, high = (0, (1 << 8 * size) - 1) if code in "BHIQ" else (-(1 << 8 * size - 1), (1 << 8 * size - 1) - 1)
+    low, high = (
+        (0, (1 << 8 * size) - 1) if code in "BHIQ" else (-(1 << 8 * size - 1), (1 << 8 * size - 1) - 1)
+    )
     for value in values:
         if not low <= value <= high:
             raise OverflowError("%r does not fit" % value)

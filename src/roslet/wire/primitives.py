@@ -73,7 +73,15 @@ else:
         def pack(buffer: "Any", offset: int, *values: object) -> None:
             pack_into(form, buffer, offset, *values)
 
-        return pack
+        if "x" not in form:
+            return pack
+        zeros = bytes(struct.calcsize(form))
+
+        def pack_zeroed(buffer: "Any", offset: int, *values: object) -> None:
+            buffer[offset : offset + len(zeros)] = zeros  # MicroPython skips padding without writing it
+            pack_into(form, buffer, offset, *values)
+
+        return pack_zeroed
 
     def unpacker(form: str) -> "Callable[..., tuple[Any, ...]]":
         unpack_from = struct.unpack_from
