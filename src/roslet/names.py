@@ -13,6 +13,9 @@ _REST = _LETTERS + _DIGITS + "_/"
 # Longer names are refused: no real graph has them, and a name is copied into every header and log line.
 MAX_NAME = 4096
 
+# A host name has at most 253 characters (RFC 1035), and an address fewer.
+MAX_HOST = 255
+
 # Where a ROS 1 master is when nobody says otherwise.
 DEFAULT_MASTER = "http://localhost:11311"
 
@@ -26,8 +29,6 @@ def check_name(name: str) -> str:
         raise InvalidName("a name of %d characters; at most %d are allowed" % (len(name), MAX_NAME))
     for at, char in enumerate(name):
         if char not in (_REST if at else _FIRST):
-            if at == 1 and name[0] == "~" and char in _LETTERS:
-                continue
             raise InvalidName("%r: character %d, %r, is not allowed in a ROS name" % (name, at + 1, char))
     if "//" in name:
         raise InvalidName("%r: an empty name between two slashes" % name)
@@ -125,18 +126,31 @@ class Arguments:
 def parse_host_port(uri: str) -> "tuple[str, int]":
     """Host and port of `http://host:port/`, `rosrpc://host:port` or `ros1://host:port`.
 
-    Raises InvalidName where it is no such URI. An IPv6 address stands in brackets.
+    Raises InvalidName where it is no such URI. An IPv6 address stands in brackets. Peers send these: a host must be
+    short and free of blanks and control characters before it goes to a resolver.
     """
     scheme, found, rest = uri.partition("://")
     if not found or not scheme:
         raise InvalidName("%r is no URI" % uri)
     rest = rest.partition("/")[0]
     host, found, port = rest.rpartition(":")
-    if not found or not host or not port.isdigit() or not 0 < int(port) < 65536:
-        raise InvalidName("%r: expected host:port" % uri)
+    number = _port(port)
+    if not found or not host or not number or len(host) > MAX_HOST:
+        raise InvalidName("%r: expected host:port" % uri[:MAX_HOST])
     if host.startswith("[") and host.endswith("]"):
         host = host[1:-1]
-    return host, int(port)
+    for char in host:
+        if char <= " " or char == "\x7f":
+            raise InvalidName("%r: a host holds no blanks and no control characters" % uri)
+    return host, number
+
+
+def _port(text: str) -> int:
+    """A port number in plain digits; 0 where it is none."""
+    if not 0 < len(text) <= 5 or not all([char in _DIGITS for char in text]):
+        return 0
+    number = int(text)
+    return number if number < 65536 else 0
 
 
 def parse_network(network: "str | None", master: "str | None" = None) -> "tuple[str, str]":

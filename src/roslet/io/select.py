@@ -105,6 +105,7 @@ class Reactor:
         self._turn = threading.Lock()
         self._changed = threading.Condition(threading.Lock())
         self._waiting = 0
+        self._callers = 0  # threads that would serve user code and wait for the turn
         self._lent = False  # whether the background thread has ever handed the loop to a spinner
         self._owner = 0  # the thread that has the turn
         self._spinners = 0
@@ -207,32 +208,46 @@ class Reactor:
             return True
         end = None if timeout is None else monotonic() + timeout
         if self._owner == threading.get_ident():
-            return self._loop(predicate, end, False)
+            return bool(self._loop(predicate, end, False, False))
         with self.lock:
             self._spinners += 1
             self._idle.clear()
         self.wake()
         try:
-            while not self._turn.acquire(False):
-                # Somebody else runs the loop: it tells when it has done something, and when it gives up the turn.
-                with self._changed:
-                    if predicate():
-                        return True
-                    self._waiting += 1
-                    self._changed.wait(self._left(end, 0.05))
-                    self._waiting -= 1
-                if end is not None and monotonic() >= end:
+            while True:
+                if not self._take_turn(predicate, end, user):
                     return bool(predicate())
-            self._owner = threading.get_ident()
-            try:
-                return self._loop(predicate, end, user)
-            finally:
-                self._give_up_turn()
+                try:
+                    served = self._loop(predicate, end, user, not user)
+                finally:
+                    self._give_up_turn()
+                if served is not None:
+                    return served
         finally:
             with self.lock:
                 self._spinners -= 1
                 if not self._spinners:
                     self._idle.set()
+
+    def _take_turn(self, predicate: Callable[[], object], end: float | None, user: bool) -> bool:
+        """Wait for the turn; false where `predicate()` came true, or the time was up, before."""
+        self._callers += user
+        try:
+            # A thread that serves user code goes before those that only wait for an answer: theirs may depend on it.
+            while (not user and self._callers) or not self._turn.acquire(False):
+                # Somebody else runs the loop: it tells when it has done something, and when it gives up the turn.
+                with self._changed:
+                    if predicate():
+                        return False
+                    self._waiting += 1
+                    self._changed.wait(self._left(end, 0.05))
+                    self._waiting -= 1
+                if end is not None and monotonic() >= end:
+                    return False
+        finally:
+            self._callers -= user
+        self._owner = threading.get_ident()
+        return True
 
     def _give_up_turn(self) -> None:
         self._owner = 0
@@ -255,11 +270,17 @@ class Reactor:
     def _left(end: float | None, most: float) -> float:
         return most if end is None else max(0.0, min(most, end - monotonic()))
 
-    def _loop(self, predicate: Callable[[], object], end: float | None, user: bool) -> bool:
+    def _loop(
+        self, predicate: Callable[[], object], end: float | None, user: bool, yields: bool
+    ) -> bool | None:
+        """Whether the predicate came true before the time was up; None where `yields` and another thread, which serves
+        user code as well, waits for the turn."""
         turn = self._run_turn
         while not predicate():  # first of all: it may have come true while another thread had the loop
             if end is not None and monotonic() >= end:
                 return False
+            if yields and self._callers:
+                return None
             turn(end, user)
             if self._error is not None:
                 error, self._error = self._error, None

@@ -133,9 +133,9 @@ class Publisher:
                     # The usual case first: nothing waits, so try the socket at once.
                     if link.queue.bytes == 0:
                         try:
-                            sent = link.channel.sock.send(frame)  # type: ignore[attr-defined]
+                            sent = link.channel.sock.send(frame)
                         except OSError as error:
-                            sent = link.channel._send_failed(error)  # type: ignore[attr-defined]
+                            sent = link.channel._send_failed(error)
                         if sent == end:
                             link.messages += 1
                             link.bytes += end - 4
@@ -187,7 +187,7 @@ class Publisher:
         frame: bytes | None = None
         for link in links:
             if link.queue.bytes == 0 and len(buffers) <= MAX_GATHER:
-                sent = link.channel.try_send_many(buffers)  # type: ignore[attr-defined]
+                sent = link.channel.try_send_many(buffers)
                 if sent == total:
                     link.messages += 1
                     link.bytes += total - 4
@@ -221,7 +221,7 @@ class Publisher:
             link.queue.push(bytes(frame))
         link.messages += 1
         link.bytes += len(frame) - 4
-        link.channel.want_write()  # type: ignore[union-attr,attr-defined]
+        link.channel.want_write()
 
     def _queue(self, link: PublisherLink, frame: bytes) -> None:
         if self._wait and link.queue.bytes:
@@ -229,7 +229,7 @@ class Publisher:
         link.queue.push(frame)
         link.messages += 1
         link.bytes += len(frame) - 4
-        link.channel.want_write()  # type: ignore[union-attr,attr-defined]
+        link.channel.want_write()
 
     def _send_rest(self, link: PublisherLink, buffers: list[Any], sent: int, total: int) -> None:
         """Block until the frame is out ("keep_all"), then go on."""
@@ -280,7 +280,7 @@ class Publisher:
             with self._lock:
                 if isinstance(link, PublisherLink):
                     link.queue.push(self._latched)
-                    link.channel.want_write()  # type: ignore[union-attr,attr-defined]
+                    link.channel.want_write()
                 else:
                     self._send_datagrams(link, memoryview(self._latched))
         for function in self._on_connect if opened else self._on_disconnect:
@@ -359,6 +359,7 @@ class Subscription:
         callback: Callable[[Any], object] | None,
         qos: QoS,
         max_frame: int,
+        with_link: bool = False,
     ) -> None:
         self.node = node
         self.topic = topic
@@ -371,7 +372,7 @@ class Subscription:
         self._queue: deque[Any] = deque()
         self._waiters: list[Callable[[], None]] = []
         self._local_waiting = 0
-        self._with_link = False
+        self._with_link = with_link  # the callback gets (message, link); the link is None for one of this node
         self._publisher: Publisher | None = None
         self._on_connect: list[Callable[[str], None]] = []
         self._on_disconnect: list[Callable[[str], None]] = []

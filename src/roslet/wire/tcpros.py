@@ -10,10 +10,11 @@ from struct import pack, unpack_from
 
 from roslet.errors import ProtocolError
 
-# A header holds a message_definition, a few hundred KiB at the very most.
-MAX_HEADER = 4 << 20
-# A frame's body, unless the subscription says otherwise: larger than any image or point cloud in use, and small enough that
-# one hostile publisher cannot take the machine's memory.
+# A header holds a message_definition, some 50 KiB for the longest type in use. Every connection that comes in may
+# hold this much before it has said who it is.
+MAX_HEADER = 1 << 20
+# A frame's body, unless the subscription says otherwise: larger than any image or point cloud in use, and small
+# enough that one hostile publisher cannot take the machine's memory.
 MAX_FRAME = 256 << 20
 # More fields than the two dozen that exist.
 MAX_FIELDS = 256
@@ -31,7 +32,7 @@ def emit_header(fields: "dict[str, str]") -> bytes:
 
 
 def parse_header(data: "bytes | bytearray | memoryview") -> "dict[str, str]":
-    """The fields of a header, given without its leading length.
+    """The fields of a header, given without its leading length. Of a name that comes twice the last value counts.
 
     Raises ProtocolError: header-truncated, header-field-without-equals, header-too-many-fields, header-not-utf-8.
     """

@@ -51,7 +51,8 @@ def parse(datagram: memoryview) -> Block:
 
 
 def emit(connection_id: int, message_id: int, frame: memoryview, datagram_size: int) -> "list[bytes]":
-    """The datagrams of one frame (length and body). Raises ProtocolError udp-message-too-large."""
+    """The datagrams of one frame (length and body), each of at most `datagram_size` bytes, which must be more than
+    SIZE. Raises ProtocolError udp-message-too-large."""
     room = datagram_size - SIZE
     blocks = max(1, (len(frame) + room - 1) // room)
     if blocks > MAX_BLOCKS:

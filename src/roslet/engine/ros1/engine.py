@@ -13,25 +13,44 @@ from roslet.engine.ros1.links import (
     PublisherLink,
     ServiceClientLink,
     ServiceServerLink,
+    check_caller,
+    shorten,
 )
 from roslet.engine.ros1.registration import Registrations
 from roslet.engine.ros1.rpc import ReplyReceived, RpcClient, RpcServer, answer_calls, unpack_reply
 from roslet.engine.ros1.slave import Slave
 from roslet.engine.ros1.udp import UdpReceiver, UdpSender
-from roslet.errors import Fault, InvalidName, ProtocolError, RosletError
+from roslet.errors import Fault, InvalidName, ProtocolError, RosletError, Unreachable
 from roslet.names import parse_host_port
 from roslet.wire.tcpros import MAX_FRAME, emit_header, require
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import Protocol
+
+    from roslet.engine.ros1.graph import Handler, Sink
 
     Answered = Callable[[object, "Exception | None", float], None]
 
-# Events kept for a shell that does not take them: the oldest goes first.
-MAX_EVENTS = 1000
+    class DatagramPort(Protocol):
+        """What receives the datagrams of one UDPROS subscription, and sends those of publications."""
+
+        def open(self, receiver: UdpReceiver) -> int:
+            """The port on which `receiver` gets datagrams from now on; 0 where none can be had."""
+
+        def close(self, receiver: UdpReceiver) -> None:
+            """Stop that. Closing what is not open is allowed."""
+
+
+# Different reasons that are counted; there are some sixty (see `reasons`).
+MAX_REASONS = 200
+# Different remarks about peers that are made once each. Beyond it there are none: peers must not fill a log.
+MAX_REMARKS = 500
 # Seconds for one call of the master or of another node's slave API.
 CALL_TIMEOUT = 10.0
+# Calls of other nodes' slave APIs at a time, each on a connection of its own. More wait: a list of publishers may be long.
+MAX_SLAVE_CALLS = 32
 
 
 class Engine:
@@ -59,7 +78,8 @@ class Engine:
         self.counters: dict[str, int] = {}
         self.parameters: dict[str, object] = {}  # subscribed ones, as the master last told
         self.shutdown_reason: str | None = None
-        self.udp: object | None = None  # the shell's datagram socket: host, port, send(data, address)
+        self.grace_until = 0.0  # until then a publisher that the master does not name may only be late
+        self.udp: DatagramPort | None = None  # the shell's
         self.on_note: Callable[[str], None] | None = None
         self.on_parameter: Callable[[str, object], None] | None = None
         self.on_shutdown: Callable[[str], None] | None = None
@@ -67,11 +87,12 @@ class Engine:
         self._new: list[Machine | RpcClient] = []
         self._touched: list[Machine | RpcClient] = []
         host_name, port = parse_host_port(master_uri)
-        self._master = RpcClient(host_name, port)
+        self._master = RpcClient(host_name, port, timeout=CALL_TIMEOUT)
         self._master_calls: dict[int, Answered] = {}
         self._slave_calls: list[tuple[RpcClient, Answered]] = []
+        self._slave_waiting: list[tuple[RpcClient, str, list[object], Answered]] = []
         self._watched: list[str] = []
-        self._receivers: dict[int, UdpReceiver] = {}
+        self._remarks: dict[str, int] = {}
 
     def listening(self, rpc_port: int, tcpros_port: int) -> None:
         """Where the shell accepts: the slave API's and the TCPROS port."""
@@ -110,8 +131,8 @@ class Engine:
         return IncomingLink(self, now)
 
     def count(self, reason: str, number: int = 1) -> None:
-        """Count a drop or a refusal under its name."""
-        if reason in self.counters or len(self.counters) < MAX_EVENTS:
+        """Count a drop or a refusal under its name; `reasons` says what each name means."""
+        if reason in self.counters or len(self.counters) < MAX_REASONS:
             self.counters[reason] = self.counters.get(reason, 0) + number
 
     def note(self, text: str) -> None:
@@ -119,11 +140,22 @@ class Engine:
         if self.on_note is not None:
             self.on_note(text)
 
+    def note_once(self, about: str, text: str) -> None:
+        """The same about something that a peer may repeat as often as it likes."""
+        if about not in self._remarks and len(self._remarks) < MAX_REMARKS:
+            self._remarks[about] = 1
+            self.note(text)
+
     def deadline(self) -> "float | None":
         soonest = self.registrations.deadline()
         for entries in self.subscriptions.values():
             for subscription in entries:
                 when = subscription.deadline()
+                if when is not None and (soonest is None or when < soonest):
+                    soonest = when
+        for publication in self.publications.values():
+            for sender in publication.senders:
+                when = sender.deadline()
                 if when is not None and (soonest is None or when < soonest):
                     soonest = when
         return soonest
@@ -133,27 +165,46 @@ class Engine:
         for entries in list(self.subscriptions.values()):
             for subscription in entries:
                 subscription.handle_deadline(now)
+        for publication in list(self.publications.values()):
+            for sender in publication.senders:
+                sender.handle_deadline(now)
 
     # -- calls out
 
     def call_master(
         self, method: str, arguments: "list[object] | list[str]", done: "Answered", now: float
     ) -> None:
-        """Call the master; `done(value, error, now)` is called once, with the third item of its reply."""
-        call_id = self._master.call(method, list(arguments), now)
+        """Call the master; `done(value, error, now)` is called once, with the third item of its reply.
+
+        Raises InvalidMessage where an argument cannot be sent.
+        """
+        try:
+            call_id = self._master.call(method, list(arguments), now)
+        except Unreachable as error:  # too many calls wait already
+            done(None, error, now)
+            return
         self._master_calls[call_id] = done
         self.touch(self._master)
 
     def call_slave(
         self, uri: str, method: str, arguments: "list[object]", done: "Answered", now: float
     ) -> None:
-        """Call another node's slave API, on a connection of its own."""
+        """Call another node's slave API, on a connection of its own. At most MAX_SLAVE_CALLS are under way."""
         try:
             host, port = parse_host_port(uri)
         except InvalidName as error:
             done(None, error, now)
             return
-        client = RpcClient(host, port)
+        path = "/" + uri.partition("://")[2].partition("/")[2]
+        client = RpcClient(host, port, path, timeout=CALL_TIMEOUT)
+        if len(self._slave_calls) < MAX_SLAVE_CALLS:
+            self._begin_call(client, method, arguments, done, now)
+        else:
+            self._slave_waiting.append((client, method, arguments, done))
+
+    def _begin_call(
+        self, client: RpcClient, method: str, arguments: "list[object]", done: "Answered", now: float
+    ) -> None:
         client.call(method, arguments, now)
         self._slave_calls.append((client, done))
         self.open(client)
@@ -176,14 +227,20 @@ class Engine:
                     self._slave_calls.remove(entry)
                     client.close(now)
                     self.touch(client)
+                    if self._slave_waiting:
+                        waiting, method, arguments, wants = self._slave_waiting.pop(0)
+                        self._begin_call(waiting, method, arguments, wants, now)
                     _hand(event, done, now)
                 elif client.wants_connection:
                     self.open(client)
 
-    def rpc_pump(self, server: RpcServer, now: float) -> None:
-        """Answer the calls that have come in on one connection."""
+    def rpc_pump(self, server: RpcServer, now: float, host: str) -> None:
+        """Answer the calls that have come in on one connection, from the address `host`."""
         self.slave.now = now
+        self.slave.peer = host
         answer_calls(server, self.slave.methods, now)
+        for reason in server.take_refused():
+            self.count(reason)
 
     # -- the node's graph entries
 
@@ -210,7 +267,7 @@ class Engine:
         type_name: str,
         md5sum: str,
         definition: str,
-        sink: "Callable[[memoryview, int, int, object], None]",
+        sink: "Sink",
         now: float,
         max_frame: int = MAX_FRAME,
         transport: str = "tcp",
@@ -243,7 +300,7 @@ class Engine:
         type_name: str,
         md5sum: str,
         types: "tuple[str, str]",
-        handler: "Callable[[memoryview, int, int, ServiceServerLink], bytes]",
+        handler: "Handler",
         now: float,
     ) -> ServiceOffer:
         if name in self.services:
@@ -297,6 +354,9 @@ class Engine:
 
     def parameter_changed(self, key: str, value: object) -> None:
         key = key[:-1] if len(key) > 1 and key.endswith("/") else key
+        if not [watched for watched in self._watched if _is_within(key, watched)]:
+            self.count("parameter-not-subscribed")
+            return
         if key in self._watched:
             self.parameters[key] = value
         if self.on_parameter is not None:
@@ -307,28 +367,34 @@ class Engine:
     def greet(self, fields: "dict[str, str]", outgoing: "list[bytes]", now: float) -> "FrameLink | None":
         """What an incoming connection becomes; our header goes to `outgoing`. Raises ProtocolError to refuse it."""
         require(fields, ("callerid", "md5sum"))
+        check_caller(fields["callerid"])
         if "service" in fields:
             return self._greet_client(fields, outgoing)
         require(fields, ("topic",))
         publication = self.publications.get(fields["topic"])
         if publication is None:
-            raise ProtocolError("unknown-topic", "%s does not publish %s" % (self.name, fields["topic"]))
-        refusal = publication.accepts(fields)
-        if refusal:
-            self.note(refusal)
-            raise ProtocolError("type-mismatch", refusal)
+            raise ProtocolError(
+                "unknown-topic", "%s does not publish %s" % (self.name, shorten(fields["topic"]))
+            )
+        try:
+            publication.check(fields)
+        except ProtocolError as refusal:
+            self.note_once(publication.topic + fields["callerid"], refusal.message)
+            raise
         outgoing.append(emit_header(publication.header()))
         return PublisherLink(self, publication, fields, publication.depth)
 
     def _greet_client(self, fields: "dict[str, str]", outgoing: "list[bytes]") -> "FrameLink | None":
         offer = self.services.get(fields["service"])
         if offer is None:
-            raise ProtocolError("unknown-service", "%s does not offer %s" % (self.name, fields["service"]))
+            raise ProtocolError(
+                "unknown-service", "%s does not offer %s" % (self.name, shorten(fields["service"]))
+            )
         if fields["md5sum"] not in ("*", offer.md5sum):
             text = "service %s has md5sum %s, the client expects %s" % (
                 offer.topic,
                 offer.md5sum,
-                fields["md5sum"],
+                shorten(fields["md5sum"]),
             )
             raise ProtocolError("md5sum-mismatch", text)
         outgoing.append(emit_header(offer.header()))
@@ -340,31 +406,16 @@ class Engine:
 
     # -- UDPROS
 
-    def udp_request(self, subscription: Subscription) -> "list[object]":
-        return UdpReceiver.request(self, subscription)
-
-    def udp_accepted(
-        self, subscription: Subscription, uri: str, answer: "list[object]", now: float
-    ) -> UdpReceiver:
-        receiver = UdpReceiver.accepted(self, subscription, uri, answer)
-        self._receivers[receiver.connection_id] = receiver
-        subscription.link_opened(receiver, now)
+    def udp_receiver(self, subscription: Subscription, uri: str) -> "UdpReceiver | None":
+        """What could receive datagrams from the publisher at `uri`; None where the shell has no port for it."""
+        if self.udp is None:
+            return None
+        receiver = UdpReceiver(self, subscription, uri)
+        receiver.port = self.udp.open(receiver)
+        if not receiver.port:
+            self.count("udp-no-port")
+            return None
         return receiver
-
-    def add_udp_sender(
-        self, publication: Publication, fields: "dict[str, str]", host: str, port: int, size: int
-    ) -> UdpSender:
-        sender = UdpSender(self, publication, fields, (host, port), size)
-        publication.opened(sender)
-        return sender
-
-    def close_udp(self, link: "UdpReceiver | UdpSender") -> None:
-        link.closing = True
-        self._receivers.pop(link.connection_id, None)
-
-    def receive_datagram(self, data: memoryview, source: "tuple[str, int]", now: float) -> None:
-        """A datagram on the UDPROS port. Unknown connections and broken blocks are counted and dropped."""
-        UdpReceiver.dispatch(self, self._receivers, data, source, now)
 
     # -- the end
 
@@ -372,8 +423,7 @@ class Engine:
         """What to tell the master at the end, in this order."""
         calls: list[tuple[str, list[object]]] = []
         for entry in self.registrations.entries:
-            where = self.service_uri if entry.kind == "Service" else self.uri
-            calls.append(("unregister" + entry.kind, [self.name, entry.topic, where]))
+            calls.append(self.registrations.withdrawal(entry))
         for key in self._watched:
             calls.append(("unsubscribeParam", [self.name, self.uri, key]))
         return calls
@@ -384,6 +434,10 @@ class Engine:
             self.shutdown_reason = reason or "asked to shut down"
             if self.on_shutdown is not None:
                 self.on_shutdown(self.shutdown_reason)
+
+
+def _is_within(key: str, watched: str) -> bool:
+    return key == watched or watched == "/" or key.startswith(watched + "/")
 
 
 def _hand(event: object, done: "Answered", now: float) -> None:

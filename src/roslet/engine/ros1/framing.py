@@ -3,9 +3,9 @@
 The shell asks `writable()` for room, receives into it, and says `received(n)`; each complete frame goes to
 `deliver(view, start, end)` at once, in the same thread. Runs on MicroPython.
 
-Memory: small frames share one chunk of `CHUNK` bytes. A frame that does not fit gets a buffer of its own, which grows
-as bytes arrive (at most doubling), so a length that lies costs its sender as many bytes as it costs us. After delivery
-such a buffer serves the next large frame unless a view on it is still alive; then it belongs to whoever holds the view.
+Memory: small frames share one chunk of `CHUNK` bytes. A frame that does not fit gets a buffer of its own, of at most
+`FIRST_LARGE` bytes at first, which then at most doubles as bytes arrive: a length that lies costs its sender half of
+what it costs us. After delivery such a buffer serves the next large frame unless a view on it is still alive; then it belongs to whoever holds the view.
 """
 
 from struct import unpack_from
@@ -23,8 +23,14 @@ CHUNK = 64 << 10
 FIRST_LARGE = 4 << 20
 
 
+class Paused(Exception):
+    """Raised by `deliver` to leave the frames behind this one where they are; `received(0)` goes on with them."""
+
+
 class FrameReceiver:
-    """See the module. `maximum` bounds a frame's body in bytes; a longer one raises ProtocolError frame-too-large.
+    """See the module. What `deliver` raises comes out of `received`; the frame counts as delivered.
+
+    `maximum` bounds a frame's body in bytes; a longer one raises ProtocolError frame-too-large.
 
     `prefix` bytes stand before each length (1 for service replies, else 0); `deliver` gets the start of the body and
     finds the prefix at `start - 4 - prefix`. With `copies` each small frame is delivered in a buffer of its own, for
@@ -39,7 +45,7 @@ class FrameReceiver:
         chunk: int = CHUNK,
         copies: bool = False,
     ) -> None:
-        self.deliver = deliver
+        self.deliver = deliver if maximum >= chunk else self._checked(deliver)
         self.copies = copies
         self.maximum = maximum
         self._head = 4 + prefix
@@ -52,6 +58,18 @@ class FrameReceiver:
         self._large_size = 0  # bytes of that frame, head included
         self._large_end = 0  # bytes of it received
         self._spare: bytearray | None = None
+
+    def _checked(
+        self, deliver: "Callable[[memoryview, int, int], None]"
+    ) -> "Callable[[memoryview, int, int], None]":
+        """Only where the bound lies below the chunk: then a frame that is whole already may still be too long."""
+
+        def checked(view: memoryview, start: int, end: int) -> None:
+            if end - start > self.maximum:
+                raise _too_large(end - start, self.maximum)
+            deliver(view, start, end)
+
+        return checked
 
     @property
     def pending(self) -> int:
@@ -80,29 +98,30 @@ class FrameReceiver:
         view = self._chunk_view
         start = self._start
         head = self._head
-        while end - start >= head:
-            size = unpack_from("<I", view, start + head - 4)[0]
-            body = start + head
-            if size > end - body:
-                if size > self.maximum:
-                    raise ProtocolError(
-                        "frame-too-large", "%d bytes; at most %d are accepted" % (size, self.maximum)
-                    )
-                if head + size > len(view):
-                    self._begin_large(start, end, head + size)
-                    return
-                break
-            self._start = start = body + size
-            if self.copies:
-                self.deliver(memoryview(bytearray(view[body:start])), 0, size)
-            else:
-                self.deliver(view, body, start)
-        if start == end:
-            self._start = self._end = 0
-        elif len(view) - start < CHUNK // 4 or end == len(view):
-            rest = bytes(view[start:end])
-            view[: len(rest)] = rest
-            self._start, self._end = 0, len(rest)
+        try:
+            while end - start >= head:
+                size = unpack_from("<I", view, start + head - 4)[0]
+                body = start + head
+                if size > end - body:
+                    if size > self.maximum:
+                        raise _too_large(size, self.maximum)
+                    if head + size > len(view):
+                        self._begin_large(start, end, head + size)
+                        start = end = 0
+                    break
+                self._start = start = body + size
+                if self.copies:
+                    self.deliver(memoryview(bytearray(view[body:start])), 0, size)
+                else:
+                    self.deliver(view, body, start)
+        finally:
+            # Also when `deliver` raises: the next bytes need room.
+            if start == end:
+                self._start = self._end = 0
+            elif len(view) - start < len(view) // 4 or end == len(view):
+                rest = bytes(view[start:end])
+                view[: len(rest)] = rest
+                self._start, self._end = 0, len(rest)
 
     def feed(self, data: "bytes | bytearray | memoryview") -> None:
         """Receive `data` by copying it: for tests and for shells that cannot receive into a buffer."""
@@ -135,8 +154,15 @@ class FrameReceiver:
             self._spare = large
 
 
+def _too_large(size: int, maximum: int) -> ProtocolError:
+    return ProtocolError("frame-too-large", "%d bytes; at most %d are accepted" % (size, maximum))
+
+
 def _unshared(buffer: bytearray) -> bool:
-    """Whether no view on `buffer` is alive: a bytearray that is exported refuses to change its length."""
+    """Whether no view on `buffer` is alive: a bytearray that is exported refuses to change its length. MicroPython
+    cannot tell."""
+    if not hasattr(buffer, "pop"):
+        return False
     try:
         last = buffer.pop()
     except BufferError:

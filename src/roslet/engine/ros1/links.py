@@ -6,17 +6,25 @@ Every machine here has the same face towards the shell (see `Machine`). Source: 
 
 from struct import pack, unpack_from
 
-from roslet.engine.ros1.framing import FrameReceiver
+from roslet.engine.ros1.framing import FrameReceiver, Paused
 from roslet.engine.ros1.queue import SendQueue
 from roslet.errors import HandshakeRefused, ProtocolError, RosletError, ServiceFailed
+from roslet.names import MAX_NAME
 from roslet.record import Names
 from roslet.wire.tcpros import MAX_FRAME, MAX_HEADER, emit_header, parse_header, require
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import Any, Protocol
 
-    from roslet.engine.ros1.engine import Engine, Publication, ServiceOffer, Subscription
+    from roslet.engine.ros1.engine import Engine
+    from roslet.engine.ros1.graph import Publication, ServiceOffer, Subscription
+
+    class Channel(Protocol):
+        """What a shell hangs on a machine; machines only carry it."""
+
+        description: str
 
 CONNECTING = 0
 HANDSHAKE = 1
@@ -26,6 +34,22 @@ STATE = Names("state", {CONNECTING: "connecting", HANDSHAKE: "handshake", OPEN: 
 
 # Seconds a peer has for its connection and its header; then the connection is given up.
 HANDSHAKE_TIMEOUT = 10.0
+# Bytes of replies to one client that wait to be sent before its next request is looked at.
+MAX_REPLIES = 1 << 20
+# Characters of what a peer said that are told back or logged.
+MAX_ECHO = 200
+
+
+def shorten(text: str) -> str:
+    """What a peer said, for an error message or a log line."""
+    return text if len(text) <= MAX_ECHO else text[:MAX_ECHO] + "..."
+
+
+def check_caller(callerid: str) -> None:
+    """Raises ProtocolError bad-callerid for a name that could not be logged or told on. Nothing proves that it is the
+    caller's own."""
+    if len(callerid) > MAX_NAME or [char for char in callerid if char < " " or char == "\x7f"]:
+        raise ProtocolError("bad-callerid", "%d characters, or control characters" % len(callerid))
 
 
 class Machine:
@@ -39,9 +63,10 @@ class Machine:
     user = False
     state = CONNECTING
     reason = ""
-    channel: "object | None" = None  # the shell's own; machines only carry it
+    channel: "Channel | None" = None
 
-    def __init__(self) -> None:
+    def __init__(self, engine: "Engine") -> None:
+        self.engine = engine
         self._outgoing: list[bytes] = []
         self._input = bytearray()
         self._room = bytearray(4096)
@@ -77,7 +102,8 @@ class Machine:
     def handle_deadline(self, now: float) -> None:
         if self._deadline is not None and now >= self._deadline:
             self._deadline = None
-            self.fail("handshake-timeout", now)
+            self.engine.count("handshake-timeout")
+            self.fail("no connection header in time", now)
 
     def fail(self, reason: str, now: float) -> None:
         """Close for a reason of our own."""
@@ -120,8 +146,10 @@ class Machine:
 class FrameLink(Machine):
     """A connection that carries frames once both headers have passed."""
 
-    def __init__(self, maximum: int = MAX_FRAME, prefix: int = 0, copies: bool = False) -> None:
-        super().__init__()
+    def __init__(
+        self, engine: "Engine", maximum: int = MAX_FRAME, prefix: int = 0, copies: bool = False
+    ) -> None:
+        super().__init__(engine)
         self.frames = FrameReceiver(self._deliver, maximum, prefix, copies=copies)
         self.messages = 0
         self.bytes = 0
@@ -135,6 +163,8 @@ class FrameLink(Machine):
         if self.state == OPEN:
             try:
                 self.frames.received(count)
+            except Paused:
+                return
             except ProtocolError as error:
                 self.fault(error, now)
         else:
@@ -155,22 +185,26 @@ class FrameLink(Machine):
                 self.writable = self.frames.writable  # type: ignore[method-assign]
                 if not self.user:
                     self.frames.feed(self.take_rest())
+        except Paused:
+            return
         except ProtocolError as error:
             self.fault(error, now)
 
     def header_received(self, fields: "dict[str, str]", now: float) -> None:
         raise NotImplementedError
 
-    def fault(self, error: RosletError, now: float) -> None:
+    def fault(self, error: ProtocolError, now: float) -> None:
         """The peer broke the protocol."""
+        self.engine.count(error.reason)
         self.fail(str(error), now)
 
     def _deliver(self, view: memoryview, start: int, end: int) -> None:
         raise NotImplementedError
 
     def lost(self, reason: str, now: float) -> None:
-        if self.state == OPEN and self.frames.pending:
+        if self.state == OPEN and self.frames.pending and not self.closing:
             reason += " within a frame (%d bytes of it had come)" % self.frames.pending
+            self.engine.count("frame-truncated")
         super().lost(reason, now)
 
 
@@ -184,12 +218,13 @@ class SubscriberLink(FrameLink):
     def __init__(
         self, engine: "Engine", subscription: "Subscription", uri: str, address: "tuple[str, int]", now: float
     ) -> None:
-        super().__init__(subscription.max_frame, copies=subscription.copies)
-        self.engine = engine
+        super().__init__(engine, subscription.max_frame, copies=subscription.copies)
         self.subscription = subscription
         self.uri = uri
         self.address = address
         self.connection_id = engine.next_connection_id()
+        self.opened_at = now
+        self.refused = False  # whether we, or the publisher, found something wrong with the other
         self._deadline = now + HANDSHAKE_TIMEOUT
 
     def connected(self, now: float) -> None:
@@ -205,9 +240,10 @@ class SubscriberLink(FrameLink):
             raise ProtocolError(
                 "md5sum-mismatch",
                 "%s: the publisher sends %s with md5sum %s, we expect %s with %s"
-                % (ours.topic, fields["type"], fields["md5sum"], ours.type, ours.md5sum),
+                % (ours.topic, shorten(fields["type"]), shorten(fields["md5sum"]), ours.type, ours.md5sum),
             )
         self.state = OPEN
+        self.opened_at = now
         self.user = not ours.background
         ours.link_opened(self, now)
 
@@ -216,19 +252,27 @@ class SubscriberLink(FrameLink):
         self.bytes += end - start
         self.subscription.sink(view, start, end, self)
 
+    def fault(self, error: ProtocolError, now: float) -> None:
+        self.refused = True
+        text = "%s: the publisher at %s: %s" % (self.subscription.topic, self.uri, shorten(error.message))
+        self.engine.note_once(error.reason + self.subscription.topic + self.uri, text)
+        super().fault(error, now)
+
     def lost(self, reason: str, now: float) -> None:
         super().lost(reason, now)
         self.subscription.link_lost(self, now)
 
 
 class PublisherLink(FrameLink):
-    """One subscriber of our publication. What it sends after its header is read and ignored."""
+    """One subscriber of our publication. What it sends after its header is dropped: `data-from-subscriber`."""
+
+    if TYPE_CHECKING:
+        channel: Any  # the shell's, through which publishing threads send
 
     def __init__(
         self, engine: "Engine", publication: "Publication", fields: "dict[str, str]", depth: int
     ) -> None:
-        super().__init__()
-        self.engine = engine
+        super().__init__(engine)
         self.publication = publication
         self.peer_header = fields
         self.callerid = fields.get("callerid", "")
@@ -237,10 +281,16 @@ class PublisherLink(FrameLink):
         self.state = OPEN
 
     def receive_data(self, data: "bytes | memoryview", now: float) -> None:
-        return
+        if data:
+            self.engine.count("data-from-subscriber")
 
     def received(self, count: int, now: float) -> None:
-        return
+        self.engine.count("data-from-subscriber")
+
+    def take_rest(self) -> bytes:
+        if self._input:
+            self.engine.count("data-from-subscriber")
+        return super().take_rest()
 
     def _writable(self) -> memoryview:
         return memoryview(self._room)
@@ -251,11 +301,16 @@ class PublisherLink(FrameLink):
 
 
 class ServiceServerLink(FrameLink):
-    """One client of our service. Requests are answered in their order; `user`, because a handler is user code."""
+    """One client of our service. Requests are answered in their order; `user`, because a handler is user code.
+
+    A client that sends requests and does not take the replies is not read from once MAX_REPLIES bytes of them wait:
+    then `paused` is true, and the shell calls `go_on` when they are out.
+    """
+
+    paused = False
 
     def __init__(self, engine: "Engine", offer: "ServiceOffer", fields: "dict[str, str]") -> None:
-        super().__init__()
-        self.engine = engine
+        super().__init__(engine)
         self.offer = offer
         self.peer_header = fields
         self.callerid = fields.get("callerid", "")
@@ -263,19 +318,49 @@ class ServiceServerLink(FrameLink):
         self.connection_id = engine.next_connection_id()
         self.state = OPEN
         self.user = True
+        self._replies = 0  # bytes since the shell last took some
 
     def _deliver(self, view: memoryview, start: int, end: int) -> None:
+        if self.closing:
+            self.engine.count("request-after-the-last")
+            return
         self.messages += 1
         self.bytes += end - start
         try:
             body = self.offer.handler(view, start, end, self)
-            self._outgoing.append(b"\x01" + pack("<I", len(body)))
-            self._outgoing.append(body)
+            done = True
         except ServiceFailed as error:
-            text = str(error).encode("utf-8")
-            self._outgoing.append(b"\x00" + pack("<I", len(text)) + text)
+            body = str(error).encode("utf-8")
+            done = False
+        if body is None:
+            return  # whoever serves it calls `answer`
+        self.answer(done, body)
+        if self._replies >= MAX_REPLIES and not self.closing:
+            self.paused = True
+            raise Paused
+
+    def answer(self, done: bool, body: bytes) -> None:
+        """Reply to the oldest request without one: the response, or the text of a failure. The shell must be told
+        (`engine.touch`) where this is not called from within the handler."""
+        self._outgoing.append((b"\x01" if done else b"\x00") + pack("<I", len(body)))
+        self._outgoing.append(body)
+        self._replies += len(body) + 5
         if not self.persistent:
             self.closing = True
+
+    def data_to_send(self) -> bytes:
+        self._replies = 0
+        return super().data_to_send()
+
+    def go_on(self, now: float) -> None:
+        """The replies are out: look at the requests that have come meanwhile."""
+        self.paused = False
+        try:
+            self.frames.received(0)
+        except Paused:
+            return
+        except ProtocolError as error:
+            self.fault(error, now)
 
     def lost(self, reason: str, now: float) -> None:
         super().lost(reason, now)
@@ -288,8 +373,7 @@ class ServiceClientLink(FrameLink):
     def __init__(
         self, engine: "Engine", header: "dict[str, str]", address: "tuple[str, int]", now: float
     ) -> None:
-        super().__init__(prefix=1)
-        self.engine = engine
+        super().__init__(engine, prefix=1)
         self.header = header
         self.address = address
         self.persistent = header.get("persistent") == "1"
@@ -315,13 +399,12 @@ class ServiceClientLink(FrameLink):
 
     def header_received(self, fields: "dict[str, str]", now: float) -> None:
         if "error" in fields:
-            self.refusal = fields["error"]
             raise ProtocolError("refused-by-peer", fields["error"])
         require(fields, ("md5sum",))
         expected = self.header["md5sum"]
         if expected != "*" and fields["md5sum"] not in ("*", expected):
             raise ProtocolError(
-                "md5sum-mismatch", "the service has %s, we expect %s" % (fields["md5sum"], expected)
+                "md5sum-mismatch", "the service has %s, we expect %s" % (shorten(fields["md5sum"]), expected)
             )
         self.state = OPEN
         self._outgoing.extend(self._requests)
@@ -361,8 +444,7 @@ class IncomingLink(Machine):
     state = HANDSHAKE
 
     def __init__(self, engine: "Engine", now: float) -> None:
-        super().__init__()
-        self.engine = engine
+        super().__init__(engine)
         self.successor: FrameLink | None = None
         self._deadline = now + HANDSHAKE_TIMEOUT
 
@@ -377,13 +459,13 @@ class IncomingLink(Machine):
             if self.successor is None:
                 self.closing = True
         except ProtocolError as error:
-            self.engine.count("incoming: " + error.reason)
+            self.engine.count(error.reason)
             self._outgoing.append(emit_header({"error": str(error)}))
             self.fail(str(error), now)
 
     def lost(self, reason: str, now: float) -> None:
         if self.successor is not None:
             self.successor.lost(reason, now)
-        elif self._input or not self.closing:
-            self.engine.count("incoming: closed-before-header")
+        elif not self.closing:
+            self.engine.count("closed-before-header")
         super().lost(reason, now)

@@ -1,7 +1,5 @@
 """The bounded queue of frames that one connection has yet to send. Runs on MicroPython."""
 
-from roslet.errors import ProtocolError
-
 # What one connection may hold back where its queue is unbounded ("keep all"); then publishing must wait.
 MAX_BYTES = 64 << 20
 
@@ -9,8 +7,9 @@ MAX_BYTES = 64 << 20
 class SendQueue:
     """Frames waiting for a slow peer, oldest first.
 
-    depth     most frames kept; a further one drops the oldest that has not begun to go out. 0 means no such limit:
-              then `full` turns true at `max_bytes` and the publisher has to wait.
+    depth     most frames kept, one that has partly gone out not counted; a further one drops the oldest. 0 means no
+              such limit: then `full` turns true at `max_bytes` and the publisher has to wait.
+    bytes     of all frames kept; a frame counts whole until its last byte has gone.
     dropped   frames dropped so far; `high_water` the most frames that ever waited.
     """
 
@@ -23,6 +22,7 @@ class SendQueue:
         self._frames: list[bytes] = []
         self._first = 0  # index of the oldest frame: popping from the front of a list costs its length
         self._sent = 0  # bytes of the oldest frame that have gone out
+        self._begun = False  # whether the oldest frame has partly gone out, perhaps before it was queued
 
     def __len__(self) -> int:
         return len(self._frames) - self._first
@@ -31,18 +31,17 @@ class SendQueue:
     def full(self) -> bool:
         """Whether a frame more would go beyond the bound."""
         if self.depth:
-            return len(self) >= self.depth
+            return len(self) - (1 if self._begun else 0) >= self.depth
         return self.bytes >= self.max_bytes
 
     def push_rest(self, rest: bytes) -> None:
-        """Queue what is left of a frame that has partly gone out already; the queue must be empty."""
+        """Queue what is left of a frame that has partly gone out already. Raises ValueError where others wait: its
+        rest would go out behind them, and the stream would be lost."""
         if len(self):
-            raise ProtocolError("queue-order", "a partly sent frame behind others")
+            raise ValueError("the rest of a frame behind other frames")
         self._append(rest)
         self._sent = 0
         self._begun = True
-
-    _begun = False  # whether the oldest frame has partly gone out before it was queued
 
     def push(self, frame: bytes) -> int:
         """Queue a whole frame; returns how many frames were dropped for it (0 or 1)."""
@@ -59,7 +58,7 @@ class SendQueue:
             self.high_water = len(self)
 
     def _drop_oldest(self) -> int:
-        at = self._first + (1 if self._begun or self._sent else 0)
+        at = self._first + (1 if self._begun else 0)
         if at >= len(self._frames):
             return 0
         self.bytes -= len(self._frames[at])

@@ -3,13 +3,18 @@
 Source: ROS 1 slave API. Runs on MicroPython.
 """
 
-from roslet.engine.ros1.links import OPEN
+from roslet.engine.ros1.links import OPEN, check_caller, shorten
+from roslet.engine.ros1.udp import MAX_SENDERS, UdpSender
 from roslet.errors import ProtocolError
 from roslet.wire.tcpros import parse_header
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from roslet.engine.ros1.engine import Engine
+    from roslet.engine.ros1.graph import Publication
+    from roslet.engine.ros1.links import Machine
+    from roslet.engine.ros1.rpc import Methods
+    from roslet.engine.ros1.udp import UdpReceiver
 
 SUCCESS = 1
 FAILURE = 0
@@ -26,8 +31,9 @@ class Slave:
     def __init__(self, engine: "Engine") -> None:
         self.engine = engine
         self.now = 0.0  # when the call that is being answered came
+        self.peer = ""  # the address that it came from
         # Each method with the fewest and the most parameters it takes.
-        self.methods = {
+        self.methods: Methods = {
             "getBusStats": (self.get_bus_stats, 1, 1),
             "getBusInfo": (self.get_bus_info, 1, 1),
             "getMasterUri": (self.get_master_uri, 1, 1),
@@ -104,7 +110,10 @@ class Slave:
         return [SUCCESS, "node name", self.engine.name]
 
     def shutdown(self, caller: str, reason: str = "") -> "list[object]":
-        self.engine.shutdown_requested("%s asks: %s" % (caller, reason) if reason else "%s asks" % caller)
+        text = "%s asks" % shorten(str(caller))
+        if reason:
+            text += ": " + shorten(str(reason))
+        self.engine.shutdown_requested(text)
         return [SUCCESS, "shutting down", 0]
 
     def get_pid(self, caller: str) -> "list[object]":
@@ -127,7 +136,11 @@ class Slave:
     def publisher_update(self, caller: str, topic: str, publishers: "list[object]") -> "list[object]":
         if not isinstance(topic, str) or not isinstance(publishers, (list, tuple)):
             return [ERROR, "expected a topic and a list of URIs", 0]
+        if topic not in self.engine.subscriptions:
+            self.engine.count("update-of-unknown-topic")
         uris = [uri for uri in publishers if isinstance(uri, str)]
+        if len(uris) < len(publishers):
+            self.engine.count("bad-publisher-uri", len(publishers) - len(uris))
         for subscription in list(self.engine.subscriptions.get(topic, [])):
             subscription.update(uris, self.now)
         return [SUCCESS, "noted", 0]
@@ -136,8 +149,8 @@ class Slave:
         engine = self.engine
         publication = engine.publications.get(topic) if isinstance(topic, str) else None
         if publication is None:
-            engine.count("slave: unknown-topic")
-            return [FAILURE, "%s does not publish %s" % (engine.name, topic), 0]
+            engine.count("unknown-topic")
+            return [FAILURE, "%s does not publish %s" % (engine.name, shorten(str(topic))), 0]
         if not isinstance(protocols, (list, tuple)):
             return [ERROR, "expected a list of protocols", 0]
         for protocol in protocols:
@@ -147,38 +160,61 @@ class Slave:
                 return [SUCCESS, "ready", ["TCPROS", engine.host, engine.tcpros_port]]
             if protocol[0] == "UDPROS" and engine.udp is not None:
                 return self._request_udp(publication, list(protocol))
+        engine.count("no-common-transport")
         return [FAILURE, "no supported protocol among those offered", []]
 
-    def _request_udp(self, publication: "object", protocol: "list[object]") -> "list[object]":
+    def _request_udp(self, publication: "Publication", protocol: "list[object]") -> "list[object]":
+        """Datagrams go to the address that the call came from, whatever host it names: else one small request would
+        turn this publisher against anybody."""
         engine = self.engine
-        if len(protocol) != 5:
-            return [ERROR, "UDPROS takes a header, host, port and datagram size", 0]
-        _, header, host, port, size = protocol
-        if (
-            not isinstance(header, (bytes, bytearray))
-            or not isinstance(host, str)
-            or not isinstance(port, int)
-            or not isinstance(size, int)
-            or not 0 < port < 65536
-            or size < MIN_DATAGRAM
-        ):
-            return [ERROR, "UDPROS parameters of a wrong type or range", 0]
         try:
-            fields = parse_header(header)
+            fields, port, size = _udp_parameters(protocol)
+            publication.check(fields)
         except ProtocolError as error:
-            return [ERROR, str(error), 0]
-        refusal = publication.accepts(fields)  # type: ignore[attr-defined]
-        if refusal:
-            return [FAILURE, refusal, 0]
-        size = min(size, MAX_DATAGRAM)
-        sender = engine.add_udp_sender(publication, fields, host, port, size)  # type: ignore[arg-type]
+            engine.count(error.reason)
+            return [ERROR if error.reason == "udp-parameters" else FAILURE, str(error), 0]
+        callerid = fields.get("callerid", "")
+        kept = [
+            sender
+            for sender in publication.senders
+            if (sender.callerid, sender.address) != (callerid, (self.peer, port))
+        ]
+        if len(kept) >= MAX_SENDERS:
+            engine.count("udp-too-many-subscribers")
+            return [FAILURE, "%d UDPROS subscribers are served already" % len(kept), 0]
+        publication.senders = tuple(kept)  # the same subscriber may ask again; it is served once
+        sender = UdpSender(engine, publication, callerid, (self.peer, port), size, self.now)
+        publication.opened(sender)
+        # roslet and roscpp send from whatever port: what is said here stands for nothing.
         return [
             SUCCESS,
             "ready",
-            ["UDPROS", engine.host, engine.udp.port, sender.connection_id, size, sender.header()],  # type: ignore[union-attr,attr-defined]
+            ["UDPROS", engine.host, engine.tcpros_port, sender.connection_id, size, sender.header()],
         ]
 
 
-def _peer(link: object) -> str:
-    channel = getattr(link, "channel", None)
-    return str(getattr(channel, "description", "")) if channel is not None else ""
+def _udp_parameters(protocol: "list[object]") -> "tuple[dict[str, str], int, int]":
+    """Header fields, port and datagram size of a UDPROS offer. Raises ProtocolError udp-parameters or bad-callerid."""
+    if len(protocol) != 5:
+        raise ProtocolError("udp-parameters", "UDPROS takes a header, host, port and datagram size")
+    _, header, host, port, size = protocol
+    if (
+        not isinstance(header, (bytes, bytearray))
+        or not isinstance(host, str)
+        or type(port) is not int
+        or type(size) is not int
+        or not 0 < port < 65536
+        or size < MIN_DATAGRAM
+    ):
+        raise ProtocolError("udp-parameters", "a wrong type, or out of range")
+    try:
+        fields = parse_header(header)
+    except ProtocolError as error:
+        raise ProtocolError("udp-parameters", str(error))
+    check_caller(fields.get("callerid", ""))
+    return fields, port, min(size, MAX_DATAGRAM)
+
+
+def _peer(link: "Machine | UdpReceiver") -> str:
+    channel = link.channel
+    return channel.description if channel is not None else ""
