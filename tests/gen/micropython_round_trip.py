@@ -7,13 +7,17 @@ case: [dialect, package, kind, class, fields, hex]. Prints the number of cases t
 import json
 import sys
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
-def find(dialect, package, kind, name):
+
+def find(dialect: str, package: str, kind: str, name: str) -> "Any":
     module = __import__("%s_types.%s.%s" % (dialect, package, kind), None, None, [name])
     return getattr(module, name)
 
 
-def fill(kind, fields):
+def fill(kind: "Any", fields: "Any") -> "Any":
     message = kind()
     for position, (name, _text) in enumerate(kind._fields_and_types):
         attribute, base, array = kind._spec[position][:3]
@@ -23,7 +27,7 @@ def fill(kind, fields):
     return message
 
 
-def one(base, value):
+def one(base: "Any", value: "Any") -> "Any":
     if base == "time" or base == "duration":
         from roslet.wire.time import Duration, Time
 
@@ -31,7 +35,7 @@ def one(base, value):
     return value if isinstance(base, str) else fill(base, value)
 
 
-def check(dialect, package, kind_name, name, fields, data):
+def check(dialect: str, package: str, kind_name: str, name: str, fields: "Any", data: str) -> None:
     kind = find(dialect, package, kind_name, name)
     wanted = bytes([int(data[at : at + 2], 16) for at in range(0, len(data), 2)])
     message = fill(kind, fields)
@@ -56,7 +60,7 @@ def check(dialect, package, kind_name, name, fields, data):
         raise ValueError("%s: took %d of %d bytes" % (name, size, len(wanted)))
 
 
-def main():
+def main() -> None:
     sys.path.insert(0, sys.argv[1])
     cases = 0
     with open(sys.argv[2]) as lines:

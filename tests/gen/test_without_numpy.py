@@ -6,6 +6,7 @@ import json
 import pathlib
 import subprocess
 import sys
+from typing import Any
 
 from roslet.gen import runtime
 
@@ -29,9 +30,10 @@ def run(*arguments: str) -> str:
 def test_without_numpy_bytes_are_the_same_and_arrays_are_memoryviews() -> None:
     seen = json.loads(run(str(HERE / "without_numpy.py")))
     assert seen["numpy"] is False
+    dialect: Any
     for dialect in ("ros1", "ros2"):
-        kind = runtime.message_class(dialect, "sensor_msgs/JointState")  # type: ignore[arg-type]
-        made = kind(name=["a"], position=[1.0, 2.0], velocity=[3.0], effort=(4, 5))  # type: ignore[call-arg]
+        kind: Any = runtime.message_class(dialect, "sensor_msgs/JointState")
+        made = kind(name=["a"], position=[1.0, 2.0], velocity=[3.0], effort=(4, 5))
         found = seen[dialect]
         assert found["data"] == made.serialize().hex()
         assert found["type"] == "memoryview"

@@ -2,24 +2,26 @@
 
 import json
 import sys
+from typing import Any
 
 
 class Blocker:
-    def find_spec(self, name, path=None, target=None):
+    def find_spec(self, name: str, path: object = None, target: object = None) -> None:
         if name == "numpy" or name.startswith("numpy."):
             raise ImportError("numpy is blocked")
 
 
 sys.meta_path.insert(0, Blocker())
 
-import array
+import array  # noqa: E402
 
-from roslet.errors import InvalidMessage
-from roslet.gen import runtime
+from roslet.errors import InvalidMessage  # noqa: E402
+from roslet.gen import runtime  # noqa: E402
 
-seen = {}
+seen: Any = {}
+dialect: Any
 for dialect in ("ros1", "ros2"):
-    kind = runtime.message_class(dialect, "sensor_msgs/JointState")
+    kind: Any = runtime.message_class(dialect, "sensor_msgs/JointState")
     made = kind(name=["a"], position=[1.0, 2.0], velocity=array.array("d", [3.0]), effort=(4, 5))
     data = made.serialize()
     back = kind.deserialize(data)
@@ -31,7 +33,7 @@ for dialect in ("ros1", "ros2"):
         "again": kind.deserialize(back.serialize()) == made,
         "copy": back.copy() == made,
     }
-    imu = runtime.message_class(dialect, "sensor_msgs/Imu")
+    imu: Any = runtime.message_class(dialect, "sensor_msgs/Imu")
     seen[dialect]["zeros"] = list(imu().orientation_covariance)
     seen[dialect]["imu"] = imu.deserialize(imu().serialize()) == imu()
     try:

@@ -22,7 +22,7 @@ def message(text: str, dialect: Any = "ros2") -> Message:
 
 
 def laid_out(text: str, encoding: Any = CDR) -> Any:
-    dialect = "ros1" if encoding == ROS1 else "ros2"
+    dialect: Any = "ros1" if encoding == ROS1 else "ros2"
     return layout(message(text, dialect), Registry(dialect, None).message, encoding)
 
 
@@ -99,7 +99,8 @@ def test_a_sequence_keeps_what_holds_before_and_after_its_body() -> None:
     sequence = made.operations[1]
     assert isinstance(sequence, Sequence)
     assert sequence.element.fixed == 12
-    assert sequence.element.operations[0].align == 1
+    (run,) = sequence.element.operations
+    assert isinstance(run, Run) and run.align == 1
     assert made.operations[2].align == 1
 
 
