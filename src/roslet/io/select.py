@@ -180,14 +180,14 @@ class Reactor:
             try:
                 os.write(self._wake_write, b"\0")
             except BlockingIOError:
-                pass
+                return  # full: it wakes the loop as it is
 
     def _woken(self, events: int) -> None:
         self._awake = False
         try:
             os.read(self._wake_read, 64)
         except BlockingIOError:
-            pass
+            return
 
     # -- running
 
@@ -211,6 +211,7 @@ class Reactor:
             return bool(self._loop(predicate, end, False, False))
         with self.lock:
             self._spinners += 1
+            self._callers += user
             self._idle.clear()
         self.wake()
         try:
@@ -230,8 +231,8 @@ class Reactor:
                     self._idle.set()
 
     def _take_turn(self, predicate: Callable[[], object], end: float | None, user: bool) -> bool:
-        """Wait for the turn; false where `predicate()` came true, or the time was up, before."""
-        self._callers += user
+        """Wait for the turn; false where `predicate()` came true, or the time was up, before. The caller has counted itself
+        in `_callers` if `user`."""
         try:
             # A thread that serves user code goes before those that only wait for an answer: theirs may depend on it.
             while (not user and self._callers) or not self._turn.acquire(False):
@@ -245,7 +246,9 @@ class Reactor:
                 if end is not None and monotonic() >= end:
                     return False
         finally:
-            self._callers -= user
+            if user:
+                with self.lock:
+                    self._callers -= 1
         self._owner = threading.get_ident()
         return True
 
