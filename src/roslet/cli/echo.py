@@ -100,10 +100,10 @@ def echo(arguments: argparse.Namespace) -> int:
         while not over() and not node.is_shutdown:
             node.spin_until(over, _soonest(arguments, begin, latest))
         publishers = subscription.publisher_count
-    if arguments.timeout is not None and not done and not shown:
+    if not done and arguments.timeout is not None and time.monotonic() - latest >= arguments.timeout:
         who = f"{publishers} publishers" if publishers != 1 else "1 publisher"
         raise CommandError(f"{topic}: no message within {arguments.timeout:g} s ({who})")
-    return 0 if left is None or done or arguments.limit is not None else 1
+    return 0
 
 
 def _soonest(arguments: argparse.Namespace, begin: float, latest: float) -> float | None:

@@ -8,7 +8,7 @@ import signal
 import sys
 from contextlib import suppress
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from roslet.cli.options import (
     BROKEN_PIPE,
@@ -75,7 +75,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         # A name or a string may hold what the terminal's encoding lacks: show it escaped rather than fail.
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
-    _quit_on_sigterm()
+    previous = _quit_on_sigterm()
     try:
         code = _run(given)
         sys.stdout.flush()
@@ -95,6 +95,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         return _failed(f"{where}{error.strerror or error}", FAILED)
+    finally:
+        if previous is not None:
+            signal.signal(signal.SIGTERM, previous)
 
 
 def _run(given: list[str]) -> int:
@@ -120,12 +123,16 @@ def _failed(text: str, code: int) -> int:
     return code
 
 
-def _quit_on_sigterm() -> None:
+def _quit_on_sigterm() -> Any:
+    """Make SIGTERM an exception; the handler to put back, None where this thread may not set one."""
+
     def terminated(number: int, frame: FrameType | None) -> None:
         raise Terminated(TERMINATED)
 
-    with suppress(ValueError):  # not in the main thread: whoever called us there decides about signals
-        signal.signal(signal.SIGTERM, terminated)
+    try:
+        return signal.signal(signal.SIGTERM, terminated)
+    except ValueError:
+        return None
 
 
 if __name__ == "__main__":

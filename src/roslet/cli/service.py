@@ -175,7 +175,7 @@ def run_call(arguments: argparse.Namespace) -> int:
     from roslet.cli.render import plain, yaml_lines
     from roslet.cli.session import open_node
     from roslet.cli.values import build
-    from roslet.errors import UnknownType
+    from roslet.errors import ServiceFailed, UnknownType
 
     load_types(arguments)
     name = full_name(arguments.service)
@@ -193,7 +193,10 @@ def run_call(arguments: argparse.Namespace) -> int:
         raise CommandError(f"{error}; load it with --types DIR") from None
     with open_node(arguments, "call") as node:
         request = build(service_type.Request, arguments.values, node.now)
-        response = node.client(name, service_type).call(request, timeout=arguments.timeout)
+        try:
+            response = node.client(name, service_type).call(request, timeout=arguments.timeout)
+        except ServiceFailed as error:
+            raise CommandError(f"{name} failed: {error}") from None
     value = plain(response)
     if arguments.json:
         emit_json(value)

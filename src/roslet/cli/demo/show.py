@@ -103,9 +103,9 @@ def _watch(
             "image": figures["viewer"].get("received", 0),
         }
         rates = {topic: (count - before.get(topic, 0)) / (now - then) for topic, count in counts.items()}
-        live.show(
-            _live_text(counts, rates, figures["talker"].get("median"), statistics.median(trips), now - began)
-        )
+        median, base = figures["talker"].get("median"), statistics.median(trips)
+        parts = _live_parts(counts, rates, median, base, now - began)
+        live.show(("\n" if live.in_place else "  ").join(parts))
         before, then = counts, now
 
 
