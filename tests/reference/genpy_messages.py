@@ -6,6 +6,8 @@ A time or duration is {"secs", "nsecs"}, an array a list, a uint8 array a list o
 `pkg/NameRequest`.
 """
 
+# mypy: ignore-errors
+
 import contextlib
 import importlib
 import io

@@ -6,6 +6,8 @@ Each line of standard input is JSON: {"type": "pkg/kind/Name", "value": fields, 
 An array is a list; a byte is an integer. A service's request is `pkg/srv/Name_Request`.
 """
 
+# mypy: ignore-errors
+
 import importlib
 import json
 import sys

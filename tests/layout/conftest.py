@@ -1,0 +1,19 @@
+"""The tests here share registries that nobody loads anything into."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from roslet.gen import runtime
+
+_REGISTRIES: dict[str, Any] = {}
+_CLASSES: dict[tuple[str, str], Any] = {}
+
+
+@pytest.fixture(autouse=True)
+def separate_registries(monkeypatch: pytest.MonkeyPatch) -> None:
+
+    monkeypatch.setattr(runtime, "_registries", _REGISTRIES)
+    monkeypatch.setattr(runtime, "_classes", _CLASSES)
