@@ -34,6 +34,9 @@ MAX_BLOCKING = 10.0
 # rest is queued for the loop: handing over costs more. A reader that takes nothing costs this once, as its queue is
 # filled without trying from then on.
 PATIENCE = 0.001
+# A UDPROS subscriber does not say when it is ready; what comes before the answer to its request is lost. Seconds from that
+# answer to the latched message.
+UDP_LATCH_DELAY = 0.1
 # sendmsg takes at most this many buffers (IOV_MAX).
 MAX_GATHER = 1024
 
@@ -277,14 +280,19 @@ class Publisher:
 
     def _link_changed(self, link: Any, opened: bool) -> None:
         if opened and self._latched is not None:
-            with self._lock:
-                if isinstance(link, PublisherLink):
-                    link.queue.push(self._latched)
-                    link.channel.want_write()
-                else:
-                    self._send_datagrams(link, memoryview(self._latched))
+            if isinstance(link, PublisherLink):
+                link.queue.push(self._latched)  # whoever opens such a link holds our lock
+                link.channel.want_write()
+            else:
+                reactor = self.node.reactor
+                reactor.call_at(reactor.now() + UDP_LATCH_DELAY, lambda: self._send_latched(link))
         for function in self._on_connect if opened else self._on_disconnect:
             self.node.reactor.call_soon(lambda f=function, who=link.callerid: f(who), user=True)  # type: ignore[misc]
+
+    def _send_latched(self, sender: UdpSender) -> None:
+        with self._lock:
+            if self._latched is not None and not sender.messages and not sender.closing:
+                self._send_datagrams(sender, memoryview(self._latched))
 
     def on_connect(self, function: Callable[[str], None]) -> None:
         """Call `function(name of the subscriber)` inside spin when a subscriber connects."""
@@ -372,7 +380,9 @@ class Subscription:
         self._queue: deque[Any] = deque()
         self._waiters: list[Callable[[], None]] = []
         self._local_waiting = 0
-        self._with_link = with_link  # the callback gets (message, link); the link is None for one of this node
+        self._with_link = (
+            with_link  # the callback gets (message, link); the link is None for one of this node
+        )
         self._publisher: Publisher | None = None
         self._on_connect: list[Callable[[str], None]] = []
         self._on_disconnect: list[Callable[[str], None]] = []
