@@ -3,7 +3,7 @@
 The blocks of a page run in order, in one empty folder, with a master of ours on a free port. What a block is, its info
 string says:
 
-    python             runs in a process of its own and must exit 0; a `text` block right after it is its output
+    python             runs in a process of its own and must exit 0; a `text` block right after it is its standard output
     python no-run      is only compiled: an excerpt
     console            commands after `$ ` (`> ` continues one) and what they print; run by bash. A command for which no
                        output is shown must exit 0
@@ -130,23 +130,32 @@ def free_port() -> int:
 class Process:
     """A command in a process group of its own, its output in a file."""
 
-    def __init__(self, command: list[str], folder: pathlib.Path, environment: dict[str, str]) -> None:
+    def __init__(
+        self, command: list[str], folder: pathlib.Path, environment: dict[str, str], apart: bool = False
+    ) -> None:
         self._output = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `end`
+        self._errors = tempfile.TemporaryFile() if apart else None  # noqa: SIM115
         self._process = subprocess.Popen(
             command,
             cwd=folder,
             env=environment,
             stdin=subprocess.DEVNULL,
             stdout=self._output,
-            stderr=subprocess.STDOUT,
+            stderr=subprocess.STDOUT if self._errors is None else self._errors,
             start_new_session=True,
         )
 
     def output(self) -> str:
-        """What it has printed so far."""
+        """What it has printed so far; without standard error, where that is kept apart."""
+        return self._read(self._output.fileno())
+
+    def errors(self) -> str:
+        """What it has printed to standard error, where that is kept apart."""
+        return "" if self._errors is None else self._read(self._errors.fileno())
+
+    def _read(self, fd: int) -> str:
         # pread: the offset belongs to the child as well.
-        size = os.fstat(self._output.fileno()).st_size
-        return os.pread(self._output.fileno(), size, 0).decode("utf-8", "replace")
+        return os.pread(fd, os.fstat(fd).st_size, 0).decode("utf-8", "replace")
 
     def wait(self, seconds: float) -> int | None:
         """The exit code; None where it still runs after so long."""
@@ -165,6 +174,8 @@ class Process:
             self.wait(patience)
         self.wait(5.0)
         self._output.close()
+        if self._errors is not None:
+            self._errors.close()
 
 
 class Page:
@@ -244,16 +255,16 @@ class Page:
             self._run_python(block)
 
     def _run_python(self, block: Block) -> None:
-        process = Process(
-            [sys.executable, "-c", block.source.replace(PORT, self._port)], self._folder, self._environment
-        )
+        command = [sys.executable, "-c", block.source.replace(PORT, self._port)]
+        process = Process(command, self._folder, self._environment, apart=True)
         code = process.wait(LIMIT)
         printed = process.output().replace(self._port, PORT)
+        errors = process.errors()
         process.end()
         if code is None:
-            self._wrong(block, f"still running after {LIMIT:g} s\n{printed}")
+            self._wrong(block, f"still running after {LIMIT:g} s\n{printed}{errors}")
         elif code:
-            self._wrong(block, f"exit code {code}\n{printed}")
+            self._wrong(block, f"exit code {code}\n{printed}{errors}")
         elif block.output is not None:
             shown = block.output
             if not matches(shown.source, printed, "similar" in shown.words):
