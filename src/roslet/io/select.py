@@ -241,8 +241,10 @@ class Reactor:
                     if predicate():
                         return False
                     self._waiting += 1
-                    self._changed.wait(self._left(end, 0.05))
-                    self._waiting -= 1
+                    try:
+                        self._changed.wait(self._left(end, 0.05))
+                    finally:
+                        self._waiting -= 1
                 if end is not None and monotonic() >= end:
                     return False
         finally:
@@ -352,6 +354,8 @@ class Reactor:
 
     def _run_soon(self, queue: deque[Callable[[], None]], locked: bool) -> None:
         for _ in range(len(queue)):
+            if not queue:
+                return  # one of the functions has waited, and served the rest meanwhile
             function = queue.popleft()
             if locked:
                 with self.lock:
@@ -406,10 +410,14 @@ class Reactor:
             self._owner = threading.get_ident()
             try:
                 while not self._spinners and not self._stopped:
-                    self._run_turn(None, False)
-                    if self._error is not None:
-                        error, self._error = self._error, None
+                    try:
+                        self._run_turn(None, False)
+                    except Exception as error:
+                        # A slip of ours; without this thread the process would go silent.
                         _print(error)
+                    if self._error is not None:
+                        raised, self._error = self._error, None
+                        _print(raised)
             finally:
                 self._lent = True
                 self._give_up_turn()
@@ -429,19 +437,42 @@ class Reactor:
         os.close(self._wake_write)
 
 
+    def abandon(self) -> None:
+        """Close the descriptors of a loop that a forked child has inherited."""
+        self._stopped = True
+        self._handlers = {}
+        for poller in (self._control, self._all):
+            if hasattr(poller, "close"):
+                poller.close()
+        os.close(self._wake_read)
+        os.close(self._wake_write)
+
+
 _reactor: Reactor | None = None
-_reactor_pid = 0
 _reactor_lock = threading.Lock()
 
 
 def reactor() -> Reactor:
     """The process's loop, made at the first call and made anew in a forked child."""
-    global _reactor, _reactor_pid
+    global _reactor
     with _reactor_lock:
-        if _reactor is None or _reactor_pid != os.getpid():
+        if _reactor is None:
             _reactor = Reactor()
-            _reactor_pid = os.getpid()
         return _reactor
+
+
+def _forked() -> None:
+    """In the child: the loop, its threads and what its poller watches are the parent's. Only descriptors are closed: to
+    unregister one would take it from the parent's poller, which is the same."""
+    global _reactor, _reactor_lock
+    old, _reactor = _reactor, None
+    _reactor_lock = threading.Lock()
+    if old is not None:
+        old.abandon()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forked)
 
 
 def listen(host: str, port: int = 0, backlog: int = 128) -> socket.socket:
@@ -458,16 +489,24 @@ def listen(host: str, port: int = 0, backlog: int = 128) -> socket.socket:
     return sock
 
 
+# How a peer that has vanished without a word is noticed, in seconds: after KEEPIDLE of silence it is asked every KEEPINTVL,
+# KEEPCNT times; what was sent to it may wait for UNACKED.
+KEEPIDLE = 10
+KEEPINTVL = 4
+KEEPCNT = 4
+UNACKED = 26
+
+
 def tune(sock: socket.socket) -> None:
     """No delay for small messages, and a dead peer is noticed within half a minute."""
     sock.setblocking(False)
     sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
     for name, value in (
-        ("TCP_KEEPIDLE", 10),
-        ("TCP_KEEPINTVL", 4),
-        ("TCP_KEEPCNT", 4),
-        ("TCP_USER_TIMEOUT", 26000),
+        ("TCP_KEEPIDLE", KEEPIDLE),
+        ("TCP_KEEPINTVL", KEEPINTVL),
+        ("TCP_KEEPCNT", KEEPCNT),
+        ("TCP_USER_TIMEOUT", UNACKED * 1000),
     ):
         option = getattr(socket, name, None)
         if option is not None:
