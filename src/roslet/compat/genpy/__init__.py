@@ -1,0 +1,23 @@
+"""What a program finds as `genpy`: times, durations and the base of messages."""
+
+from roslet.compat.messages import (
+    DeserializationError,
+    MessageException,
+    SerializationError,
+    dress,
+)
+from roslet.wire.message import Message
+from roslet.wire.time import Duration, Time
+
+TVal = (Time, Duration)
+dress()
+
+__all__ = [
+    "DeserializationError",
+    "Duration",
+    "Message",
+    "MessageException",
+    "SerializationError",
+    "TVal",
+    "Time",
+]

@@ -1,0 +1,153 @@
+"""What a program's publishers of one topic share: roslet's publisher, and who wants to hear of subscribers."""
+
+from __future__ import annotations
+
+from struct import pack
+from typing import TYPE_CHECKING, Any
+
+from roslet.compat.callbacks import Worker
+from roslet.compat.messages import SerializationError
+from roslet.compat.rospy.exceptions import ROSException
+from roslet.compat.rospy.msg import AnyMsg
+from roslet.compat.session import session
+from roslet.engine.ros1.links import PublisherLink
+from roslet.errors import InvalidMessage, NodeClosed
+from roslet.node import QoS
+
+if TYPE_CHECKING:
+    from roslet.node import Node, Publisher
+
+# queue_size=0 asks for a queue without bound. This many messages for one slow subscriber are more than any program means,
+# and an end to what it can hold.
+UNBOUNDED = 1_000_000
+
+topics: dict[str, PublishedTopic] = {}
+
+
+class PublishedTopic:
+    """The publishers of one topic in this program."""
+
+    def __init__(self, name: str, data_class: Any) -> None:
+        self.name = name
+        self.data_class = data_class
+        self.type = getattr(data_class, "_numpy_of", data_class)
+        self.listeners: list[Any] = []
+        self.latch = False
+        self.queue_size: int | None = None
+        self.headers: dict[str, str] = {}
+        self.users = 0
+        self.handle: Publisher | None = None
+        self._events: Worker | None = None
+        self._asked = False
+
+    def attach(self) -> None:
+        """Register with the master, as soon as there is a node. Further calls have no effect."""
+        if not self._asked:
+            self._asked = True
+            session.when_initialized(self._attach)
+
+    def add(self, latch: bool, queue_size: int | None, headers: dict[str, str] | None, listener: Any) -> None:
+        """One more rospy.Publisher of the topic, with its wishes."""
+        self.users += 1
+        self.latch = self.latch or latch
+        self.queue_size = (
+            queue_size if self.users == 1 else max(self.queue_size or 0, queue_size or 0) or None
+        )
+        self.headers.update(headers or {})
+        if listener is not None:
+            self.listeners.append(listener)
+        if self.handle is not None:
+            self._configure(self.handle)
+
+    def remove(self) -> None:
+        """One less; the last one ends the publication."""
+        self.users -= 1
+        if self.users:
+            return
+        if topics.get(self.name) is self:
+            del topics[self.name]
+        if self.handle is not None:
+            self.handle.close()
+        if self._events is not None:
+            self._events.close()
+
+    @property
+    def connections(self) -> int:
+        return 0 if self.handle is None else self.handle.subscriber_count
+
+    def _attach(self, node: Node) -> None:
+        if not self.users or session.shutting_down.is_set():
+            return
+        if self.type is AnyMsg:
+            return  # nobody could read it
+        size = self.queue_size
+        qos = QoS(history="keep_all") if size is None else QoS(depth=size or UNBOUNDED)
+        self.handle = node.publisher(self.name, self.type, qos=qos)
+        self._configure(self.handle)
+
+    def _configure(self, handle: Publisher) -> None:
+        entry = handle._entry
+        if entry is None:
+            return
+        handle._latch = entry.latching = self.latch
+        if self.headers:
+            plain = type(entry).header
+            entry.header = lambda: {**plain(entry), **self.headers}  # type: ignore[method-assign]
+        if self.listeners and self._events is None:
+            self._events = Worker(f"listeners {self.name}", self._tell)
+            forward = handle._link_changed
+
+            def changed(link: Any, opened: bool) -> None:
+                forward(link, opened)
+                if self._events is not None:
+                    self._events.put((link, opened))
+
+            entry.on_link = changed
+
+    def _tell(self, event: tuple[Any, bool]) -> None:
+        """A subscriber has come or gone: tell the listeners, outside the loop."""
+        link, opened = event
+        for listener in list(self.listeners):
+            if opened:
+                listener.peer_subscribe(
+                    self.name, self.publish, lambda message: self.publish_to(link, message)
+                )
+            else:
+                listener.peer_unsubscribe(self.name, self.connections)
+
+    def publish(self, message: Any) -> None:
+        """Send to all. Raises SerializationError."""
+        handle = self.handle
+        if handle is None or (not self.latch and not handle.subscriber_count):
+            return
+        if handle._has_header and message.header.frame_id is None:
+            message.header.frame_id = "0"
+        try:
+            if message.__class__ is AnyMsg:
+                message = self._known(message)
+            handle.publish(message)
+        except InvalidMessage as error:
+            raise SerializationError(str(error)) from None
+        except NodeClosed:
+            if not session.shutting_down.is_set():
+                raise ROSException("publish() to a closed topic") from None
+
+    def _known(self, message: AnyMsg) -> Any:
+        return self.type.deserialize(message._buff or b"")
+
+    def publish_to(self, link: Any, message: Any) -> None:
+        """Send to one subscriber only."""
+        handle = self.handle
+        if handle is None or not isinstance(link, PublisherLink) or link.closing:
+            return
+        if not isinstance(message, self.type):
+            message = self.data_class(message)
+        try:
+            body = message.serialize()
+        except InvalidMessage as error:
+            raise SerializationError(str(error)) from None
+        with handle._lock:
+            handle._queue(link, pack("<I", len(body)) + body)
+
+
+__all__ = ["PublishedTopic", "topics"]

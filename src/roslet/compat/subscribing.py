@@ -1,0 +1,120 @@
+"""What a program's subscribers of one topic and type share: roslet's subscription, and the thread of their callbacks."""
+
+from __future__ import annotations
+
+import traceback
+from typing import TYPE_CHECKING, Any
+
+from roslet.compat.callbacks import UNBOUNDED, Worker
+from roslet.compat.messages import simplify
+from roslet.compat.rospy import core
+from roslet.compat.rospy.msg import AnyMsg
+from roslet.compat.session import session
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from roslet.node import Node, Subscription
+
+topics: dict[tuple[str, Any], SubscribedTopic] = {}
+
+
+class SubscribedTopic:
+    """The subscribers of one topic with one message class in this program."""
+
+    def __init__(self, name: str, data_class: Any, queue_size: int | None) -> None:
+        self.name = name
+        self.data_class = data_class
+        self.callbacks: list[tuple[Callable[..., object], Any]] = []
+        self.users = 0
+        self.handle: Subscription | None = None
+        self.worker = Worker(f"topic {name}", self._call, queue_size)
+        numpy = hasattr(data_class, "_numpy_of")
+        self._simplify = (
+            None if data_class is AnyMsg else simplify(getattr(data_class, "_numpy_of", data_class), numpy)
+        )
+        self._headers: dict[int, tuple[Any, dict[str, str]]] = {}
+        self._paused: set[Any] = set()
+        self._asked = False
+
+    def attach(self) -> None:
+        """Register with the master, as soon as there is a node. Further calls have no effect."""
+        if not self._asked:
+            self._asked = True
+            session.when_initialized(self._attach)
+
+    def remove(self, callback: tuple[Callable[..., object], Any] | None) -> None:
+        """One rospy.Subscriber less; the last one ends the subscription."""
+        if callback is not None and callback in self.callbacks:
+            self.callbacks.remove(callback)
+        self.users -= 1
+        if self.users:
+            return
+        if topics.get((self.name, self.data_class)) is self:
+            del topics[self.name, self.data_class]
+        if self.handle is not None:
+            self.handle.close()
+        self.worker.close()
+
+    @property
+    def connections(self) -> int:
+        return 0 if self.handle is None else self.handle.publisher_count
+
+    def _attach(self, node: Node) -> None:
+        if not self.users or session.shutting_down.is_set():
+            return
+        kind = "*" if self.data_class is AnyMsg else self.data_class
+        self.handle = node.subscribe(self.name, kind, self._received, with_link=True)  # type: ignore[arg-type]
+
+    # In the loop's thread: hand over, never wait.
+
+    def _received(self, message: Any, link: Any) -> None:
+        worker = self.worker
+        worker.put((message, link))
+        if worker.size is None and len(worker) >= UNBOUNDED and link is not None and link not in self._paused:
+            channel = getattr(link, "channel", None)
+            if channel is not None:
+                self._paused.add(link)
+                channel.pause(True)
+
+    # In the worker's thread.
+
+    def _call(self, item: tuple[Any, Any]) -> None:
+        message, link = item
+        if self._paused and len(self.worker) < UNBOUNDED // 2:
+            self._resume()
+        if session.shutting_down.is_set():
+            return
+        if self.data_class is AnyMsg:
+            raw, message = message, AnyMsg()
+            message._buff = raw.data
+        elif link is None:
+            # From a publisher of this very program: by way of the wire's format, as it would be under rospy.
+            body = message.serialize()
+            message = self.data_class.deserialize_from(memoryview(bytearray(body)), 0, len(body))
+        if self._simplify is not None:
+            self._simplify(message)
+        message._connection_header = self._own_header() if link is None else link.peer_header
+        for callback, argument in list(self.callbacks):
+            try:
+                if argument is None:
+                    callback(message)
+                else:
+                    callback(message, argument)
+            except Exception:
+                if session.shutting_down.is_set():
+                    return
+                core.logerr("bad callback: %s\n%s" % (callback, traceback.format_exc()))
+
+    def _resume(self) -> None:
+        for link in list(self._paused):
+            self._paused.discard(link)
+            link.channel.pause(False)
+
+    def _own_header(self) -> dict[str, str]:
+        publisher = self.handle._publisher if self.handle is not None else None
+        entry = publisher._entry if publisher is not None else None
+        return {} if entry is None else entry.header()
+
+
+__all__ = ["SubscribedTopic", "topics"]
