@@ -45,6 +45,12 @@ class Formatter(argparse.RawDescriptionHelpFormatter):
     def __init__(self, prog: str) -> None:
         super().__init__(prog, max_help_position=30)
 
+    def add_argument(self, action: argparse.Action) -> None:
+        super().add_argument(action)
+        if action.nargs == argparse.PARSER:
+            # argparse forgets that the names of commands are indented once more, and breaks the longest line.
+            self._action_max_length += 2
+
 
 class Group:
     """One group of commands under construction: `roslet GROUP COMMAND`."""

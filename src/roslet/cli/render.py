@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from struct import pack, unpack
 from typing import TYPE_CHECKING, Any
@@ -183,7 +182,7 @@ def _in_line(value: Any) -> bool:
 
 def _key(key: Any) -> str:
     text = str(key)
-    return text if text.isidentifier() and text.lower() not in _WORDS else json.dumps(text)
+    return text if text.isidentifier() and text.lower() not in _WORDS else quoted(text)
 
 
 _WORDS = ("true", "false", "yes", "no", "on", "off", "null")
@@ -192,8 +191,7 @@ _WORDS = ("true", "false", "yes", "no", "on", "off", "null")
 def yaml_scalar(value: Any) -> str:
     """A scalar, an empty mapping or a list of such as YAML in one line. Strings are always quoted."""
     if isinstance(value, str):
-        # Bytes that were no UTF-8 are lone surrogates here; only escapes can show them.
-        return json.dumps(value, ensure_ascii=not value.isprintable())
+        return quoted(value)
     if value is True or value is False:
         return "true" if value else "false"
     if value is None:
@@ -203,6 +201,28 @@ def yaml_scalar(value: Any) -> str:
     if isinstance(value, list):
         return "[" + ", ".join([yaml_scalar(inner) for inner in value]) + "]"
     return "{}" if isinstance(value, dict) else str(value)
+
+
+def quoted(text: str) -> str:
+    """A string in double quotes, on one line, with the escapes of YAML.
+
+    Bytes that were no UTF-8 are lone surrogates here; they are escaped too.
+    """
+    if text.isprintable() and '"' not in text and "\\" not in text:
+        return f'"{text}"'
+    return '"' + "".join([char if _is_plain(char) else _escaped(char) for char in text]) + '"'
+
+
+def _is_plain(char: str) -> bool:
+    return char.isprintable() and char not in '"\\'
+
+
+def _escaped(char: str) -> str:
+    short = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}.get(char)
+    if short is not None:
+        return short
+    code = ord(char)
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
 
 
 def float_text(value: float) -> str:
