@@ -7,6 +7,7 @@ from roslet.wire.cursor import SINGLE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any, ClassVar, TypeAlias
 
     from typing_extensions import Self
@@ -17,9 +18,23 @@ GATHER_MINIMUM = 16384
 """Bytes from which a payload is handed out for a gathering send instead of being copied."""
 
 _SCRATCH = 8192
-_MAX_KEPT = 1 << 20
 _MAX_SCRATCHES = 8
 _scratches: "list[memoryview]" = []
+
+# A view's own method is quicker than the constructor of bytes; MicroPython has only the latter.
+_take: "Callable[[memoryview], bytes]" = memoryview.tobytes if hasattr(memoryview, "tobytes") else bytes
+
+
+def _joined(scratch: memoryview, end: int, parts: "list[tuple[int, Any]]") -> bytes:
+    """The bytes of a gathered message."""
+    pieces: "list[Any]" = []
+    done = 0
+    for offset, payload in parts:
+        pieces.append(scratch[done:offset])
+        pieces.append(payload)
+        done = offset
+    pieces.append(scratch[done:end])
+    return b"".join(pieces)
 
 
 class BufferTooSmall(RosletError):  # noqa: N818 - the tree's exceptions say what is wrong
@@ -100,25 +115,14 @@ class Message:
             scratch = _scratches.pop()
         except IndexError:
             scratch = memoryview(bytearray(_SCRATCH))
-        parts: list[tuple[int, Any]] = []
-        while True:
-            try:
-                end = self.serialize_into(scratch, 0, parts)
-                break
-            except BufferTooSmall as error:
-                scratch = memoryview(bytearray(error.size + _SCRATCH))
-        if parts:
-            pieces: list[Any] = []
-            done = 0
-            for offset, payload in parts:
-                pieces.append(scratch[done:offset])
-                pieces.append(payload)
-                done = offset
-            pieces.append(scratch[done:end])
-            data = b"".join(pieces)
-        else:
-            data = bytes(scratch[:end])
-        if len(scratch) <= _MAX_KEPT and len(_scratches) < _MAX_SCRATCHES:
+        parts: "list[tuple[int, Any]]" = []
+        try:
+            end = self.serialize_into(scratch, 0, parts)
+        except BufferTooSmall as error:
+            large = bytearray(error.size)
+            return bytes(memoryview(large)[: self.serialize_into(large)])
+        data = _joined(scratch, end, parts) if parts else _take(scratch[:end])
+        if len(_scratches) < _MAX_SCRATCHES:
             _scratches.append(scratch)
         return data
 
