@@ -147,7 +147,7 @@ def parse_host_port(uri: str) -> "tuple[str, int]":
 
 def _port(text: str) -> int:
     """A port number in plain digits; 0 where it is none."""
-    if not 0 < len(text) <= 5 or not all([char in _DIGITS for char in text]):
+    if not 0 < len(text) <= 5 or text.strip(_DIGITS):
         return 0
     number = int(text)
     return number if number < 65536 else 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import socket
 
-from roslet.engine.ros1.links import IncomingLink, PublisherLink
+from roslet.engine.ros1.links import IncomingLink, PublisherLink, ServiceClientLink
 from roslet.engine.ros1.rpc import RpcClient, RpcServer
 from roslet.io.select import EXHAUSTED, READ, Timer, listen, tune
 from roslet.io.streams import BUSY, Stream, connect, lose_machine
@@ -80,9 +80,7 @@ class Ros1Shell:
                 if error.errno in EXHAUSTED and not self._closed:
                     self.engine.count("no-descriptors")
                     if not self._evict(kind):
-                        fd = listener.fileno()
-                        self.reactor.modify(fd, 0)
-                        self.reactor.call_at(self.reactor.now() + PAUSE, lambda: self._resume(fd))
+                        self._pause(listener.fileno())
                 return
             if self._accepted[kind] >= MAX_CONNECTIONS and not self._evict(kind):
                 self.engine.count("too-many-connections")
@@ -100,6 +98,10 @@ class Ros1Shell:
                 stream.lose("closed for a newer connection")
                 return True
         return False
+
+    def _pause(self, fd: int) -> None:
+        self.reactor.modify(fd, 0)
+        self.reactor.call_at(self.reactor.now() + PAUSE, lambda: self._resume(fd))
 
     def _resume(self, fd: int) -> None:
         if not self._closed:
@@ -192,7 +194,7 @@ class Ros1Shell:
     @property
     def unsent(self) -> bool:
         """Whether anything waits for room in a socket."""
-        return any(stream.unsent for stream in self.streams)
+        return any(stream.unsent for stream in list(self.streams))
 
     def _arm(self) -> None:
         when = self.engine.deadline() if not self._closed else None
@@ -225,9 +227,22 @@ class Ros1Shell:
                 if given_up is not None and len(given_up) and not stream.closed:
                     self.engine.count("queued-at-close", len(given_up))
                 stream.close()
+                if isinstance(stream.machine, ServiceClientLink):
+                    stream.machine.lost("the node was closed", self.reactor.now())
             self.streams.clear()
             self._opening.clear()
             self._datagrams.close_all()
+            self.engine.close(self.reactor.now())
+
+    def abandon(self) -> None:
+        """In a forked child: give back the parent's sockets, and touch nothing else."""
+        self._closed = True
+        for listener in (self._rpc, self._tcpros):
+            listener.close()
+        for stream in self.streams:
+            stream.closed = True
+            stream.sock.close()
+        self._datagrams.abandon()
 
 
 class Datagrams:
@@ -288,6 +303,11 @@ class Datagrams:
         except OSError:
             return False
         return True
+
+    def abandon(self) -> None:
+        for sock in [*self._receiving.values(), self._sending]:
+            if sock is not None:
+                sock.close()
 
     def close_all(self) -> None:
         """Close every socket."""

@@ -436,7 +436,6 @@ class Reactor:
         os.close(self._wake_read)
         os.close(self._wake_write)
 
-
     def abandon(self) -> None:
         """Close the descriptors of a loop that a forked child has inherited."""
         self._stopped = True

@@ -6,6 +6,7 @@ import errno
 import socket
 import threading
 from collections import deque
+from contextlib import suppress
 
 from roslet.engine.ros1.framing import Paused
 from roslet.errors import ProtocolError
@@ -131,10 +132,7 @@ class Stream:
     def _read(self) -> None:
         machine = self.machine
         try:
-            if self._into:
-                count = self.sock.recv_into(machine.writable())
-            else:
-                count = self.sock.recv_into(self._room)
+            count = self.sock.recv_into(machine.writable() if self._into else self._room)
         except OSError as error:
             if error.errno not in _BUSY:
                 self.lose(error.strerror or str(error))
@@ -280,7 +278,8 @@ class Stream:
                 self.lose(getattr(self.machine, "reason", "") or "closed")
             elif self._last_words is None:
                 self._last_words = self.reactor.call_at(
-                    self.reactor.now() + LAST_WORDS, lambda: self.lose("closed; the peer did not read the rest")
+                    self.reactor.now() + LAST_WORDS,
+                    lambda: self.lose("closed; the peer did not read the rest"),
                 )
 
     @property
@@ -393,10 +392,8 @@ class Stream:
             finally:
                 lock.release()
         else:
-            try:
+            with suppress(OSError):  # it may be gone already
                 self.sock.shutdown(socket.SHUT_RDWR)
-            except OSError:
-                pass  # it is gone already
             self.reactor.call_at(self.reactor.now() + BUSY, self._close_socket)
 
 
@@ -425,7 +422,9 @@ def connect(
         socket.inet_aton(host)
     except OSError:
         if host != "localhost":
-            _lookup(reactor, address, lambda found: _open(reactor, machine, found, after, failed, opened), failed)
+            _lookup(
+                reactor, address, lambda found: _open(reactor, machine, found, after, failed, opened), failed
+            )
             return
         host = "127.0.0.1"
     _open(reactor, machine, (host, port), after, failed, opened)

@@ -21,7 +21,18 @@ class Clock:
         self.reactor = reactor
         self.simulated = False
         self._nanoseconds = 0
-        self._sleepers: list[Timer] = []
+        self._timers: list[Timer] = []
+
+    def simulate(self) -> None:
+        """From now on /clock says what time it is; timers go by it too."""
+        self.simulated = True
+        for timer in self._timers:
+            timer._to_simulated()
+
+    def close(self) -> None:
+        """No timer calls any more."""
+        for timer in list(self._timers):
+            timer.cancel()
 
     def nanoseconds(self) -> int:
         return self._nanoseconds if self.simulated else time.time_ns()
@@ -35,8 +46,12 @@ class Clock:
 
     def advance(self, secs: int, nsecs: int) -> None:
         """/clock says so. Timers that are due by it fire; time may also jump back, when a recording starts again."""
+        begins = not self._nanoseconds
         self._nanoseconds = secs * 1_000_000_000 + nsecs
-        for timer in list(self._sleepers):
+        if begins:
+            for timer in self._timers:
+                timer._to_simulated()
+        for timer in list(self._timers):
             timer._clock_moved()
 
 
@@ -57,9 +72,8 @@ class Timer:
         self._alarm: Alarm | None = None
         self._due = clock.seconds() + period
         self._cancelled = False
-        if clock.simulated:
-            clock._sleepers.append(self)
-        else:
+        clock._timers.append(self)
+        if not clock.simulated:
             self._next = clock.reactor.now() + period
             self._alarm = clock.reactor.call_at(self._next, self._fire, user=True)
 
@@ -79,6 +93,12 @@ class Timer:
         self.calls += 1
         self._callback()
 
+    def _to_simulated(self) -> None:
+        if self._alarm is not None:
+            self._alarm.cancel()
+            self._alarm = None
+        self._due = self._clock.seconds() + self.period
+
     def _clock_moved(self) -> None:
         now = self._clock.seconds()
         if now < self._due - self.period:
@@ -90,16 +110,17 @@ class Timer:
             self._clock.reactor.call_soon(self._run, user=True)
 
     def _run(self) -> None:
-        self.calls += 1
-        self._callback()
+        if not self._cancelled or self._once:
+            self.calls += 1
+            self._callback()
 
     def cancel(self) -> None:
         """No further calls. Cancelling twice is allowed."""
         self._cancelled = True
         if self._alarm is not None:
             self._alarm.cancel()
-        if self in self._clock._sleepers:
-            self._clock._sleepers.remove(self)
+        if self in self._clock._timers:
+            self._clock._timers.remove(self)
 
 
 class Rate:

@@ -31,7 +31,7 @@ class Future(Generic[T]):
         self._done = False
         self._value: T | None = None
         self._error: Exception | None = None
-        self._callbacks: list[Callable[[Future[T]], None]] = []
+        self._callbacks: list[Callable[[Future[T]], object]] = []
 
     def done(self) -> bool:
         return self._done
@@ -48,12 +48,11 @@ class Future(Generic[T]):
         """The error of a call that is done and failed."""
         return self._error
 
-    def add_done_callback(self, function: Callable[[Future[T]], None]) -> None:
+    def add_done_callback(self, function: Callable[[Future[T]], object]) -> None:
         """Call `function(self)` when done, in whichever thread serves the loop; at once if done already."""
+        self._callbacks.append(function)
         if self._done:
-            function(self)
-        else:
-            self._callbacks.append(function)
+            self._call_back()
 
     def set_result(self, value: T) -> None:
         if not self._done:
@@ -67,8 +66,14 @@ class Future(Generic[T]):
 
     def _finish(self) -> None:
         self._done = True
-        callbacks, self._callbacks = self._callbacks, []
-        for function in callbacks:
+        self._call_back()
+
+    def _call_back(self) -> None:
+        while self._callbacks:
+            try:
+                function = self._callbacks.pop(0)
+            except IndexError:
+                return  # another thread has just taken the last
             function(self)
 
     def __await__(self) -> Generator[Any, None, T]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import itertools
 import os
 import sys
 import threading
@@ -20,7 +21,15 @@ from roslet.errors import (
 )
 from roslet.io.ros1 import Ros1Shell, own_host
 from roslet.io.select import Reactor, reactor
-from roslet.names import Arguments, check_base_name, join, parse_host_port, parse_network, resolve
+from roslet.names import (
+    Arguments,
+    check_base_name,
+    check_name,
+    join,
+    parse_host_port,
+    parse_network,
+    resolve,
+)
 from roslet.node.clock import Clock, Rate, Timer
 from roslet.node.future import Future
 from roslet.node.log import Log
@@ -44,8 +53,11 @@ REGISTER_TIMEOUT = 2.0
 CALL_TIMEOUT = 10.0
 # Seconds that closing a node gives the master to hear of it.
 CLOSE_TIMEOUT = 0.5
+# Callbacks that wait for somebody to spin, other than those of topics, which have queues of their own.
+MAX_CALLBACKS = 1000
 _MISSING: Any = object()
 
+_serial = itertools.count()
 _open_nodes: weakref.WeakSet[Node] = weakref.WeakSet()
 
 
@@ -78,10 +90,11 @@ class Node:
         self.arguments = given = Arguments(list(arguments))
         name = given.specials.get("name", name)
         if anonymous and "name" not in given.specials:
-            name = f"{name}_{os.getpid()}_{time.time_ns() // 1_000_000}"
+            name = f"{name}_{os.getpid()}_{time.time_ns() // 1_000_000 + next(_serial)}"
         check_base_name(name)
         namespace = given.specials.get("ns") or namespace or env.get("ROS_NAMESPACE", "")
         self.name = join("/", join(namespace.lstrip("/"), name)) if namespace.strip("/") else "/" + name
+        check_name(self.name)
         self.namespace = self.name[: self.name.rfind("/")] or "/"
         self.network, master_uri = parse_network(
             network, given.specials.get("master") or env.get("ROS_MASTER_URI")
@@ -99,9 +112,13 @@ class Node:
         self._subscriptions: list[Subscription] = []
         self._spinner: threading.Thread | None = None
         self._closing = threading.Lock()
+        self._close_begun = False
+        self._callbacks_waiting = 0
+        self._unset = {key: parse_value(text) for key, text in given.parameters.items()}
         self._engine = Engine(self.name, master_uri, host, os.getpid())
         self._engine.on_note = self._note
         self._engine.on_parameter = self._parameter_changed
+        self._engine.on_master = self._set_own_parameters
         self._engine.on_shutdown = self._shut_down
         with self.reactor.lock:
             self._shell = Ros1Shell(
@@ -113,11 +130,32 @@ class Node:
     def _begin(self) -> None:
         """Log to /rosout, follow /clock where it is asked for, set the private parameters of the arguments."""
         self.log._publisher = Publisher(self, "/rosout", _message_class("rosgraph_msgs/Log"), QoS(depth=100))
+        known = []
+
+        def done(value: object, error: Exception | None, now: float) -> None:
+            known.append(True)
+            self._sim_time_known(value, error, now)
+
         with self.reactor.lock:
-            self._engine.watch_parameter("/use_sim_time", self._sim_time_known, self.reactor.now())
+            self._engine.watch_parameter("/use_sim_time", done, self.reactor.now())
+            self._set_own_parameters()
             self._update()
-        for key, value in self.arguments.parameters.items():
-            self.set_parameter("~" + key, parse_value(value))
+        # What the node does next may depend on the clock and on its parameters.
+        registrations = self._engine.registrations
+        self.reactor.run_until(
+            lambda: registrations.master_lost or (known and not self._unset), REGISTER_TIMEOUT, user=False
+        )
+
+    def _set_own_parameters(self) -> None:
+        """Set the private parameters of the arguments that are not set yet: now, or when there is a master."""
+        for key, value in list(self._unset.items()):
+
+            def done(_: object, error: Exception | None, now: float, key: str = key) -> None:
+                if error is None or isinstance(error, Fault):
+                    self._unset.pop(key, None)
+
+            arguments = [self.name, self.resolve("~" + key), value]
+            self._engine.call_master("setParam", arguments, done, self.reactor.now())
 
     # -- topics
 
@@ -150,15 +188,18 @@ class Node:
         *,
         qos: QoS | int | None = None,
         max_message: int = MAX_FRAME,
+        with_link: bool = False,
     ) -> Subscription:
         """A subscription of `topic`. `type` as for `publisher`, or "*": any type, delivered as RawMessage.
 
         `max_message` bounds one message's bytes; a publisher that sends a longer one is disconnected, and the log says so.
+        With `with_link` the callback gets (message, link): `link.peer_header` is the publisher's connection header; None
+        where the publisher is this node.
         """
         self._check_open()
         full = self.resolve(topic)
         message_type = None if type in (None, "*") else _message_class(type)
-        subscription = Subscription(self, full, message_type, callback, _qos(qos), max_message)
+        subscription = Subscription(self, full, message_type, callback, _qos(qos), max_message, with_link)
         self._subscriptions.append(subscription)
         own = self._publishers.get(full)
         if own is not None:
@@ -208,6 +249,7 @@ class Node:
         if not self.clock.simulated:
             self.reactor.run_until(lambda: self.is_shutdown, seconds)
             return
+        self.reactor.run_until(lambda: self.is_shutdown or self.clock.nanoseconds())
         begin = self.clock.seconds()
         end = begin + seconds
         self.reactor.run_until(lambda: self.is_shutdown or not begin <= self.clock.seconds() < end)
@@ -265,19 +307,19 @@ class Node:
         for name, callbacks in self._parameter_callbacks.items():
             if key == name or key.startswith(name.rstrip("/") + "/"):
                 for callback in callbacks:
-                    self.reactor.call_soon(lambda f=callback: f(value), user=True)  # type: ignore[misc]
+                    self._call_back(callback, value)
 
     def _sim_time_known(self, value: object, error: Exception | None, now: float) -> None:
         if error is not None or value is not True or self.clock.simulated:
             return
-        self.clock.simulated = True
+        self.clock.simulate()
         clock_type = _message_class("rosgraph_msgs/Clock")
 
         def sink(view: memoryview, start: int, end: int, link: object) -> None:
             try:
                 message: Any = clock_type.deserialize_from(view, start, end)
             except RosletError:
-                self._count("clock: malformed-message")
+                self._count("malformed-message")
                 return
             self.clock.advance(message.clock.secs, message.clock.nsecs)
 
@@ -417,34 +459,41 @@ class Node:
         threading.Thread(target=self.close, name="roslet-close").start()
 
     def close(self) -> None:
-        """Unregister everything and close every connection. Closing twice is allowed."""
+        """Unregister everything and close every connection. Closing twice is allowed, from on_shutdown functions too."""
         with self._closing:
-            if self.is_shutdown:
+            if self._close_begun:
                 return
-            for function in self._on_shutdown:
-                try:
-                    function()
-                except Exception as error:
-                    self.log.error(f"an on_shutdown function raised {type(error).__name__}: {error}")
-            self.log._publisher = None
-            self.is_shutdown = True
+            self._close_begun = True
+        for function in self._on_shutdown:
+            try:
+                function()
+            except Exception as error:
+                self.log.error(f"an on_shutdown function raised {type(error).__name__}: {error}")
+        self.log._publisher = None
+        self.is_shutdown = True
         _open_nodes.discard(self)
         self._say_goodbye()
+        self.clock.close()
         self._shell.close()
         self.reactor.wake()
 
     def _say_goodbye(self) -> None:
+        """Tell the master, and let out what has been published: a subscriber that reads gets the last message whole."""
         engine = self._engine
         left = []
         with self.reactor.lock:
             calls = [] if engine.registrations.master_lost else engine.closing_calls()
-            engine.registrations.entries.clear()
+            engine.registrations.forget()
             for method, arguments in calls:
                 future: Future[Any] = Future(self.reactor, method)
                 engine.call_master(method, arguments, _into(future), self.reactor.now())
                 left.append(future)
             self._update()
-        self.reactor.run_until(lambda: all(future.done() for future in left), CLOSE_TIMEOUT, user=False)
+        self.reactor.run_until(
+            lambda: not self._shell.unsent and all(future.done() for future in left),
+            CLOSE_TIMEOUT,
+            user=False,
+        )
 
     def __enter__(self) -> Node:
         return self
@@ -474,6 +523,20 @@ class Node:
     def _count(self, reason: str) -> None:
         self._engine.count(reason)
 
+    def _call_back(self, function: Callable[..., object], *arguments: object) -> None:
+        """Call `function` inside spin. Peers cause these calls, so there is a bound to how many may wait."""
+        if self._callbacks_waiting >= MAX_CALLBACKS:
+            self._count("too-many-callbacks")
+            return
+        self._callbacks_waiting += 1
+
+        def call() -> None:
+            self._callbacks_waiting -= 1
+            if not self.is_shutdown:
+                function(*arguments)
+
+        self.reactor.call_soon(call, user=True)
+
     def _note(self, text: str) -> None:
         self.reactor.call_soon(lambda: self.log.warning(text))
 
@@ -485,7 +548,7 @@ class Node:
 
     def _advertise(self, publisher: Publisher) -> graph.Publication:
         kind, qos = publisher.type, publisher.qos
-        with self.reactor.lock:
+        with self.reactor.lock:  # until it is left, no subscriber can come
             entry = self._engine.advertise(
                 publisher.topic,
                 kind._type,
@@ -495,6 +558,8 @@ class Node:
                 0 if qos.history == "keep_all" else qos.depth,
                 self.reactor.now(),
             )
+            entry.lock = publisher._lock
+            entry.on_link = publisher._link_changed
             self._update()
         return entry
 
@@ -603,6 +668,18 @@ def _of_ros1(kind: Any) -> Any:
 def _close_all() -> None:
     for node in list(_open_nodes):
         node.close()
+
+
+def _forked() -> None:
+    """In the child: the nodes are the parent's. Their sockets are given back, nothing is told to anybody."""
+    for node in list(_open_nodes):
+        node.is_shutdown = node._close_begun = True
+        node._shell.abandon()
+    _open_nodes.clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forked)
 
 
 __all__ = ["CallTimeout", "Node"]

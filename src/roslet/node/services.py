@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from roslet.errors import CallTimeout, MalformedMessage, NodeClosed, RosletError, ServiceFailed
+from roslet.errors import CallTimeout, NodeClosed, RosletError, ServiceFailed, Unreachable
 from roslet.node.future import Future
 
 TYPE_CHECKING = False
@@ -40,16 +40,20 @@ class Service:
         body = memoryview(bytearray(view[start:end]))
         try:
             request = self.type.Request.deserialize_from(body, 0, end - start)
-        except MalformedMessage as error:
-            self.node._count("service: malformed-request")
+        except (
+            Exception
+        ) as error:  # a client's bytes must not come out of spin, whatever they do to the decoder
+            self.node._count("malformed-request")
             raise ServiceFailed(f"{self.name}: malformed request: {error}") from None
         try:
             response = self._handler(request, link) if self._with_link else self._handler(request)  # type: ignore[call-arg]
             return self._serialize(response)
         except Exception as error:
             if not isinstance(error, ServiceFailed):
+                self.node._count("handler-raised")
                 self.node.log.error(f"{self.name}: the handler raised {type(error).__name__}: {error}")
-            raise ServiceFailed(str(error) or type(error).__name__) from None
+            text = str(error) or type(error).__name__
+            raise ServiceFailed(text.encode("utf-8", "replace").decode()) from None
 
     def _serialize(self, response: Any) -> bytes:
         kind = self.type.Response
@@ -134,6 +138,8 @@ class Client:
             if error is not None or not isinstance(value, str):
                 future.set_exception(error or RosletError(f"{self.name}: the master answered {value!r}"))
                 return
+            if future.done():
+                return  # given up
             try:
                 link = node._engine.service_link(value, self._header(), now)
             except RosletError as bad:
@@ -141,6 +147,8 @@ class Client:
                 return
             if self.persistent:
                 self._link = link
+            else:
+                future.add_done_callback(lambda _: self._disconnect(link))
             link.call(body, self._answer(future))
 
         node._engine.call_master("lookupService", [node.name, self.name], found, node.reactor.now())
@@ -163,8 +171,8 @@ class Client:
                 return
             try:
                 response = self.type.Response.deserialize(body)
-            except MalformedMessage as bad:
-                self.node._count("client: malformed-response")
+            except Exception as bad:  # as above
+                self.node._count("malformed-response")
                 future.set_exception(bad)
                 return
             future.set_result(response)
@@ -172,12 +180,15 @@ class Client:
         return done
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Serve until the service is registered; false after `timeout` seconds."""
+        """Serve until the service is registered; false after `timeout` seconds, or when the node closes."""
         node = self.node
         end = None if timeout is None else node.reactor.now() + timeout
         while True:
-            if node.lookup_service(self.name) is not None:
-                return True
+            try:
+                if node.lookup_service(self.name) is not None:
+                    return True
+            except (Unreachable, CallTimeout):
+                pass  # the master may come
             left = LOOK_AGAIN if end is None else min(LOOK_AGAIN, end - node.reactor.now())
             if left <= 0:
                 return False
@@ -189,10 +200,15 @@ class Client:
         self._closed = True
         link, self._link = self._link, None
         if link is not None:
-            with self.node.reactor.lock:
+            self._disconnect(link)
+
+    def _disconnect(self, link: ServiceClientLink) -> None:
+        """Close the connection; the call may be answered, or its caller no longer waits."""
+        with self.node.reactor.lock:
+            if not link.closing:
                 link.closing = True
                 self.node._engine.touch(link)
-                self.node._update()
+                self.node.reactor.call_soon(self.node._update)
 
     def __enter__(self) -> Client:
         return self

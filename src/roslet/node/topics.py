@@ -11,7 +11,7 @@ from time import monotonic
 
 from roslet.engine.ros1.links import PublisherLink
 from roslet.engine.ros1.udp import UdpSender
-from roslet.errors import MalformedMessage, NodeClosed, ProtocolError
+from roslet.errors import NodeClosed, ProtocolError
 from roslet.io.memory import LARGE, keep_large_blocks
 from roslet.wire.message import BufferTooSmall
 
@@ -34,9 +34,14 @@ MAX_BLOCKING = 10.0
 # rest is queued for the loop: handing over costs more. A reader that takes nothing costs this once, as its queue is
 # filled without trying from then on.
 PATIENCE = 0.001
+# A reader that takes a large message more slowly than this, in bytes a second, must not slow the others down: its rest is
+# queued.
+PACE = 200e6
 # A UDPROS subscriber does not say when it is ready; what comes before the answer to its request is lost. Seconds from that
 # answer to the latched message.
 UDP_LATCH_DELAY = 0.1
+# With `keep_all`, most messages that a subscription keeps for `take()`, or that one of this node's own still has to get.
+MAX_KEPT = 100_000
 # sendmsg takes at most this many buffers (IOV_MAX).
 MAX_GATHER = 1024
 
@@ -83,8 +88,6 @@ class Publisher:
         self._on_connect: list[Callable[[str], None]] = []
         self._on_disconnect: list[Callable[[str], None]] = []
         self._entry: Publication | None = node._advertise(self)
-        self._entry.lock = self._lock
-        self._entry.on_link = self._link_changed
 
     @property
     def subscriber_count(self) -> int:
@@ -112,12 +115,11 @@ class Publisher:
             raise NodeClosed(f"the publisher of {self.topic} is closed")
         if message is None:
             message = self.type(**fields)
-        elif message.__class__ is not self.type:
-            message = self.convert(message)
+        elif fields or message.__class__ is not self.type:
+            message = self._converted(message, fields)
         with self._lock:
-            self.messages = serial = self.messages + 1
             if self._has_header:
-                message.header.seq = serial
+                message.header.seq = self.messages + 1
             links = entry.links
             parts: list[Any] | None = None if self._latch or entry.senders else []
             try:
@@ -127,6 +129,7 @@ class Publisher:
                 if parts:
                     parts = []
                 end = message.serialize_into(self._buffer, 4, parts)
+            self.messages += 1
             if parts:
                 self._send_parts(links, parts, end)
             else:
@@ -152,6 +155,11 @@ class Publisher:
                     self._send_datagrams(sender, frame)
         if self._local or self._latch:
             self._deliver_locally(message)
+
+    def _converted(self, message: Any, fields: dict[str, Any]) -> Message:
+        if fields:
+            raise TypeError(f"{self.topic}: publish a message or fields, not both")
+        return self.convert(message)
 
     def convert(self, message: Any) -> Message:
         """A message of this type from a dict, or from an equal message class. Raises TypeError."""
@@ -209,34 +217,36 @@ class Publisher:
         if self._wait:
             self._send_rest(link, [frame], sent, len(frame))
             return
-        channel: Any = link.channel
-        while sent and wait_writable(channel.sock, PATIENCE):
-            sent += channel.try_send(frame[sent:])
-            if sent == len(frame):
-                link.messages += 1
-                link.bytes += len(frame) - 4
-                return
-            if channel.closed:
-                break
+        channel = link.channel
         if sent:
+            end = monotonic() + PATIENCE + len(frame) / PACE
+            while not channel.broken and wait_writable(channel.sock, min(PATIENCE, end - monotonic())):
+                sent += channel.try_send(frame[sent:])
+                if sent == len(frame):
+                    link.messages += 1
+                    link.bytes += len(frame) - 4
+                    return
             link.queue.push_rest(bytes(frame[sent:]))
-        else:
-            link.queue.push(bytes(frame))
+        elif link.queue.push(bytes(frame)):
+            self.node._count("send-queue-full")
         link.messages += 1
         link.bytes += len(frame) - 4
-        link.channel.want_write()
+        channel.want_write()
 
     def _queue(self, link: PublisherLink, frame: bytes) -> None:
-        if self._wait and link.queue.bytes:
-            self._drain(link)
-        link.queue.push(frame)
+        if self._wait and not self._drain(link):
+            link.queue.dropped += 1
+            self.node._count("blocked-too-long")
+            return
+        if link.queue.push(frame):
+            self.node._count("send-queue-full")
         link.messages += 1
         link.bytes += len(frame) - 4
         link.channel.want_write()
 
     def _send_rest(self, link: PublisherLink, buffers: list[Any], sent: int, total: int) -> None:
         """Block until the frame is out ("keep_all"), then go on."""
-        channel: Any = link.channel
+        channel = link.channel
         views = [memoryview(buffer).cast("B") for buffer in buffers]
         end = monotonic() + MAX_BLOCKING
         done = sent
@@ -248,35 +258,40 @@ class Publisher:
                 link.messages += 1
                 link.bytes += total - 4
                 return
-            if channel.closed or not wait_writable(channel.sock, end - monotonic()):
-                break
             views[0] = views[0][sent:]
+            sent = 0
+            if channel.broken or not wait_writable(channel.sock, end - monotonic()):
+                break
             sent = channel.try_send_many(views[:MAX_GATHER])
             done += sent
         if done:
             # A frame that has begun must end, or the stream is lost: its rest goes out when there is room.
-            link.queue.push_rest(b"".join([views[0][sent:], *views[1:]]))
+            link.queue.push_rest(b"".join(views))
+            link.messages += 1
+            link.bytes += total - 4
             channel.want_write()
-        else:
+        elif not channel.broken:
             link.queue.dropped += 1
-        self.node._count("publisher: blocked-too-long")
+            self.node._count("blocked-too-long")
 
-    def _drain(self, link: PublisherLink) -> None:
-        channel: Any = link.channel
+    def _drain(self, link: PublisherLink) -> bool:
+        """Block until what is queued is out; false where the subscriber took too long."""
+        channel = link.channel
         end = monotonic() + MAX_BLOCKING
         queue = link.queue
-        while queue.bytes and not channel.closed and wait_writable(channel.sock, end - monotonic()):
+        while queue.bytes and not channel.broken and wait_writable(channel.sock, end - monotonic()):
             queue.sent(channel.try_send_many(queue.peek()))
+        return not queue.bytes
 
     def _send_datagrams(self, sender: UdpSender, frame: memoryview) -> None:
         try:
             datagrams = sender.datagrams(frame)
         except ProtocolError as error:
-            self.node._count("publisher: " + error.reason)
+            self.node._count(error.reason)
             return
         for datagram in datagrams:
             if not self.node._send_datagram(datagram, sender.address):
-                self.node._count("publisher: udp-not-sent")
+                self.node._count("udp-not-sent")
 
     def _link_changed(self, link: Any, opened: bool) -> None:
         if opened and self._latched is not None:
@@ -287,7 +302,7 @@ class Publisher:
                 reactor = self.node.reactor
                 reactor.call_at(reactor.now() + UDP_LATCH_DELAY, lambda: self._send_latched(link))
         for function in self._on_connect if opened else self._on_disconnect:
-            self.node.reactor.call_soon(lambda f=function, who=link.callerid: f(who), user=True)  # type: ignore[misc]
+            self.node._call_back(function, link.callerid)
 
     def _send_latched(self, sender: UdpSender) -> None:
         with self._lock:
@@ -379,7 +394,8 @@ class Subscription:
         self._callback = callback
         self._queue: deque[Any] = deque()
         self._waiters: list[Callable[[], None]] = []
-        self._local_waiting = 0
+        self._local: deque[Any] = deque()  # from this node's own publisher
+        self._local_due = False  # whether the loop has been asked to deliver them
         self._with_link = (
             with_link  # the callback gets (message, link); the link is None for one of this node
         )
@@ -398,7 +414,9 @@ class Subscription:
             else:
                 try:
                     message = decode(view, start, end)
-                except MalformedMessage as error:
+                except (
+                    Exception
+                ) as error:  # a peer's bytes must not come out of spin, whatever they do to the decoder
                     self._reject(error, link)
                     return
             self.messages += 1
@@ -427,39 +445,53 @@ class Subscription:
             header.get("message_definition", ""),
         )
 
-    def _reject(self, error: MalformedMessage, link: Any) -> None:
+    def _reject(self, error: Exception, link: Any) -> None:
         self.malformed += 1
-        self.node._count("subscriber: malformed-message")
+        self.node._count("malformed-message")
         if self.malformed == 1:
             self.node.log.error(
                 f"{self.topic}: a message from {getattr(link, 'uri', 'a publisher')} is malformed: {error}"
             )
 
     def _receive_local(self, message: Message) -> None:
-        if self._local_waiting >= self.qos.depth and self.qos.history == "keep_last":
-            self.dropped += 1
-            return
-        self._local_waiting += 1
+        """Any thread may be here."""
+        self._append(self._local, message)
+        if not self._local_due:
+            self._local_due = True
+            self.node.reactor.call_soon(self._deliver_local, user=True)
 
-        def deliver() -> None:
-            self._local_waiting -= 1
-            if self._entry is None:
+    def _deliver_local(self) -> None:
+        self._local_due = False
+        for _ in range(len(self._local)):
+            if self._entry is None or not self._local:
                 return
+            message = self._local.popleft()
             self.messages += 1
-            if self._callback is None:
+            callback = self._callback
+            if callback is None:
                 self._keep(message)
-            elif self._with_link:
-                self._callback(message, None)  # type: ignore[call-arg]
-            else:
-                self._callback(message)
+                continue
+            try:
+                if self._with_link:
+                    callback(message, None)  # type: ignore[call-arg]
+                else:
+                    callback(message)
+            except Exception as error:
+                self.node.reactor.report(error)
 
-        self.node.reactor.call_soon(deliver, user=True)
+    def _append(self, queue: deque[Any], message: Any) -> None:
+        if len(queue) >= (self.qos.depth if self.qos.history == "keep_last" else MAX_KEPT):
+            try:
+                queue.popleft()
+            except IndexError:
+                pass  # another thread has just taken it
+            else:
+                self.dropped += 1
+                self.node._count("receive-queue-full")
+        queue.append(message)
 
     def _keep(self, message: Any) -> None:
-        if self.qos.history == "keep_last" and len(self._queue) >= self.qos.depth:
-            self._queue.popleft()
-            self.dropped += 1
-        self._queue.append(message)
+        self._append(self._queue, message)
         waiters, self._waiters = self._waiters, []
         for wake in waiters:
             wake()
@@ -467,7 +499,7 @@ class Subscription:
     def _link_changed(self, link: Any, opened: bool) -> None:
         who = getattr(link, "peer_header", {}).get("callerid", getattr(link, "uri", ""))
         for function in self._on_connect if opened else self._on_disconnect:
-            self.node.reactor.call_soon(lambda f=function: f(who), user=True)  # type: ignore[misc]
+            self.node._call_back(function, who)
 
     def on_connect(self, function: Callable[[str], None]) -> None:
         """Call `function(name of the publisher)` inside spin when a publisher is connected."""

@@ -22,7 +22,7 @@ _WORDS = {
 def parse_value(text: str) -> Any:
     """The value that `text` means. With PyYAML installed any YAML; otherwise scalars and JSON, else the text itself."""
     try:
-        import yaml
+        import yaml  # type: ignore[import-untyped,unused-ignore]
     except ImportError:
         return _parse_scalar(text)
     try:

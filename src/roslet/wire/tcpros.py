@@ -45,15 +45,19 @@ def parse_header(data: "bytes | bytearray | memoryview") -> "dict[str, str]":
         if count > MAX_FIELDS:
             raise ProtocolError("header-too-many-fields", "more than %d" % MAX_FIELDS)
         if end - at < 4:
-            raise ProtocolError("header-truncated", "%d bytes where a length should be, at byte %d" % (end - at, at))
+            raise ProtocolError(
+                "header-truncated", "%d bytes where a length should be, at byte %d" % (end - at, at)
+            )
         size = unpack_from("<I", data, at)[0]
         at += 4
         if size > end - at:
-            raise ProtocolError("header-truncated", "a field of %d bytes with %d left, at byte %d" % (size, end - at, at))
+            raise ProtocolError(
+                "header-truncated", "a field of %d bytes with %d left, at byte %d" % (size, end - at, at)
+            )
         try:
             text = str(bytes(data[at : at + size]), "utf-8")
         except UnicodeError:
-            raise ProtocolError("header-not-utf-8", "field at byte %d" % at)
+            raise ProtocolError("header-not-utf-8", "field at byte %d" % at) from None
         name, found, value = text.partition("=")
         if not found or not name:
             raise ProtocolError("header-field-without-equals", "field at byte %d" % at)

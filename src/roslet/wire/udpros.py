@@ -29,7 +29,9 @@ class Block(Record):
     _fields = ("connection_id", "operation", "message_id", "block", "data")
     __slots__ = _fields
 
-    def __init__(self, connection_id: int, operation: int, message_id: int, block: int, data: memoryview) -> None:
+    def __init__(
+        self, connection_id: int, operation: int, message_id: int, block: int, data: memoryview
+    ) -> None:
         self._set(connection_id, operation, message_id, block, data)
 
     if False:  # annotations for type checkers; `_set` assigns

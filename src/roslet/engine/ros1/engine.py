@@ -19,7 +19,7 @@ from roslet.engine.ros1.links import (
 from roslet.engine.ros1.registration import Registrations
 from roslet.engine.ros1.rpc import ReplyReceived, RpcClient, RpcServer, answer_calls, unpack_reply
 from roslet.engine.ros1.slave import Slave
-from roslet.engine.ros1.udp import UdpReceiver, UdpSender
+from roslet.engine.ros1.udp import UdpReceiver
 from roslet.errors import Fault, InvalidName, ProtocolError, RosletError, Unreachable
 from roslet.names import parse_host_port
 from roslet.wire.tcpros import MAX_FRAME, emit_header, require
@@ -83,6 +83,7 @@ class Engine:
         self.on_note: Callable[[str], None] | None = None
         self.on_parameter: Callable[[str, object], None] | None = None
         self.on_shutdown: Callable[[str], None] | None = None
+        self.on_master: Callable[[], None] | None = None  # the master is there (again)
         self._ids = 0
         self._new: list[Machine | RpcClient] = []
         self._touched: list[Machine | RpcClient] = []
@@ -344,6 +345,8 @@ class Engine:
         """The master is there again, knowing nothing: watch again what was watched."""
         for key in self._watched:
             self.call_master("subscribeParam", [self.name, self.uri, key], self._rewatched(key), now)
+        if self.on_master is not None:
+            self.on_master()
 
     def _rewatched(self, key: str) -> "Answered":
         def answered(value: object, error: "Exception | None", when: float) -> None:
@@ -427,6 +430,17 @@ class Engine:
         for key in self._watched:
             calls.append(("unsubscribeParam", [self.name, self.uri, key]))
         return calls
+
+    def close(self, now: float) -> None:
+        """Fail what is under way. The shell has closed the connections."""
+        self.registrations.forget()
+        self._master.close(now)
+        waiting, self._slave_waiting = self._slave_waiting, []
+        for client, _ in self._slave_calls:
+            client.close(now)
+        self.pump(now)
+        for _, _, _, done in waiting:
+            done(None, Unreachable("the node was closed"), now)
 
     def shutdown_requested(self, reason: str) -> None:
         """The master, or a tool, asks this node to end."""

@@ -5,7 +5,8 @@ The shell asks `writable()` for room, receives into it, and says `received(n)`; 
 
 Memory: small frames share one chunk of `CHUNK` bytes. A frame that does not fit gets a buffer of its own, of at most
 `FIRST_LARGE` bytes at first, which then at most doubles as bytes arrive: a length that lies costs its sender half of
-what it costs us. After delivery such a buffer serves the next large frame unless a view on it is still alive; then it belongs to whoever holds the view.
+what it costs us. After delivery such a buffer serves the next large frame unless a view on it is still alive; then it
+belongs to whoever holds the view.
 """
 
 from struct import unpack_from
@@ -23,7 +24,7 @@ CHUNK = 64 << 10
 FIRST_LARGE = 4 << 20
 
 
-class Paused(Exception):
+class Paused(Exception):  # noqa: N818 - no error
     """Raised by `deliver` to leave the frames behind this one where they are; `received(0)` goes on with them."""
 
 

@@ -85,9 +85,9 @@ class Publication:
     def opened(self, link: "PublisherLink | UdpSender") -> None:
         """The link can carry messages from now on. Called with `lock` held, where there is one."""
         if isinstance(link, PublisherLink):
-            self.links = self.links + (link,)
+            self.links = self.links + (link,)  # noqa: RUF005 - MicroPython has no (*a, b)
         else:
-            self.senders = self.senders + (link,)
+            self.senders = self.senders + (link,)  # noqa: RUF005
         if self.on_link is not None:
             self.on_link(link, True)
 
@@ -261,12 +261,7 @@ class Subscription:
     def _connect(self, uri: str, value: object, awaited: "UdpReceiver | None", now: float) -> None:
         if not isinstance(value, list) or not value:
             raise ProtocolError("no-common-transport", "%s offers no %s" % (uri, self.transport))
-        if (
-            value[0] == "TCPROS"
-            and len(value) >= 3
-            and isinstance(value[1], str)
-            and type(value[2]) is int
-        ):
+        if value[0] == "TCPROS" and len(value) >= 3 and isinstance(value[1], str) and type(value[2]) is int:
             host, port = parse_host_port("rosrpc://%s:%d" % (value[1], value[2]))
             machine = SubscriberLink(self.engine, self, uri, (host, port), now)
             self.engine.open(machine)

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
         description: str
 
+
 CONNECTING = 0
 HANDSHAKE = 1
 OPEN = 2

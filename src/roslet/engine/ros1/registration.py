@@ -42,6 +42,7 @@ class Registrations:
         self._next: float | None = None
         self._checking = False
         self._asked = 0
+        self._forgotten = False
         self._withdrawn: list[tuple[str, list[object]]] = []
 
     def add(self, entry: "Entry", now: float) -> None:
@@ -75,6 +76,7 @@ class Registrations:
         """Register nothing any more: the node ends."""
         self.entries.clear()
         self._next = None
+        self._forgotten = True
 
     def done(self, entry: "Entry") -> bool:
         return self.entries.get(entry) == DONE
@@ -82,7 +84,7 @@ class Registrations:
     @property
     def settled(self) -> bool:
         """Whether the master has answered for every entry."""
-        return all([state == DONE for state in self.entries.values()])
+        return all(state == DONE for state in self.entries.values())
 
     def deadline(self) -> "float | None":
         return self._next
@@ -121,6 +123,8 @@ class Registrations:
         engine.call_master("register" + entry.kind, arguments, answered, now)
 
     def _answered(self, entry: "Entry", value: object, error: "Exception | None", now: float) -> None:
+        if self._forgotten:
+            return
         if error is not None and not isinstance(error, Fault):
             if entry in self.entries:
                 self.entries[entry] = WANTED
@@ -141,6 +145,8 @@ class Registrations:
 
     def _checked(self, value: object, error: "Exception | None", now: float) -> None:
         self._checking = False
+        if self._forgotten:
+            return
         if error is not None and not isinstance(error, Fault):
             self._lost(error, now)
         elif self.master_lost:

@@ -210,7 +210,7 @@ def _udp_parameters(protocol: "list[object]") -> "tuple[dict[str, str], int, int
     try:
         fields = parse_header(header)
     except ProtocolError as error:
-        raise ProtocolError("udp-parameters", str(error))
+        raise ProtocolError("udp-parameters", str(error)) from None
     check_caller(fields.get("callerid", ""))
     return fields, port, min(size, MAX_DATAGRAM)
 
