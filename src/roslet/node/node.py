@@ -15,7 +15,6 @@ from roslet.errors import (
     CallTimeout,
     Fault,
     NodeClosed,
-    ParameterNotSet,
     RosletError,
     Unsupported,
 )
@@ -33,6 +32,7 @@ from roslet.names import (
 from roslet.node.clock import Clock, Rate, Timer
 from roslet.node.future import Future
 from roslet.node.log import Log
+from roslet.node.master import MasterApi, into
 from roslet.node.qos import QoS
 from roslet.node.services import Client, Service
 from roslet.node.topics import Publisher, Subscription
@@ -49,19 +49,16 @@ if TYPE_CHECKING:
 
 # Seconds that making a publisher, subscription or service waits for the master; after that it goes on in the background.
 REGISTER_TIMEOUT = 2.0
-# Seconds for one question to the master or to another node.
-CALL_TIMEOUT = 10.0
 # Seconds that closing a node gives the master to hear of it.
 CLOSE_TIMEOUT = 0.5
 # Callbacks that wait for somebody to spin, other than those of topics, which have queues of their own.
 MAX_CALLBACKS = 1000
-_MISSING: Any = object()
 
 _serial = itertools.count()
 _open_nodes: weakref.WeakSet[Node] = weakref.WeakSet()
 
 
-class Node:
+class Node(MasterApi):
     """A node on a ROS network.
 
     name       a base name; `__name:=x` among the arguments overrides it
@@ -254,53 +251,6 @@ class Node:
         end = begin + seconds
         self.reactor.run_until(lambda: self.is_shutdown or not begin <= self.clock.seconds() < end)
 
-    # -- parameters
-
-    def get_parameter(self, name: str, default: Any = _MISSING) -> Any:
-        """A parameter, or a dict of all below a namespace. Raises ParameterNotSet where there is none and no default."""
-        try:
-            return self.call_master("getParam", self.resolve(name))
-        except Fault:
-            if default is _MISSING:
-                raise ParameterNotSet(f"parameter {self.resolve(name)} is not set") from None
-            return default
-
-    def set_parameter(self, name: str, value: Any) -> None:
-        """Set a parameter to bool, int, float, str, bytes, list or dict."""
-        self.call_master("setParam", self.resolve(name), value)
-
-    def delete_parameter(self, name: str) -> None:
-        """Raises ParameterNotSet."""
-        try:
-            self.call_master("deleteParam", self.resolve(name))
-        except Fault as error:
-            raise ParameterNotSet(error.message) from None
-
-    def has_parameter(self, name: str) -> bool:
-        """Whether there is a parameter, or a namespace of parameters, of this name."""
-        return bool(self.call_master("hasParam", self.resolve(name)))
-
-    def search_parameter(self, name: str) -> str | None:
-        """The full name of the nearest parameter `name`, from this node's namespace upwards."""
-        try:
-            return str(self.call_master("searchParam", name))
-        except Fault:
-            return None
-
-    def parameter_names(self) -> list[str]:
-        """The full names of all parameters of the master."""
-        return [str(name) for name in self.call_master("getParamNames")]
-
-    def on_parameter(self, name: str, callback: Callable[[Any], object]) -> Any:
-        """Call `callback(value)` inside spin whenever the parameter changes; returns its present value, {} where unset."""
-        full = self.resolve(name)
-        self._parameter_callbacks.setdefault(full, []).append(callback)
-        future: Future[Any] = Future(self.reactor, f"parameter {full}")
-        with self.reactor.lock:
-            self._engine.watch_parameter(full, _into(future), self.reactor.now())
-            self._update()
-        return future.result(CALL_TIMEOUT)
-
     def _parameter_changed(self, key: str, value: object) -> None:
         if key == "/use_sim_time":
             self._sim_time_known(value, None, 0.0)
@@ -335,32 +285,11 @@ class Node:
         entry.on_link = None
         self.reactor.call_soon(self._update)
 
-    # -- the graph
+    # -- names
 
     def resolve(self, name: str) -> str:
         """The full name that `name` has here, remappings applied. Raises InvalidName."""
         return resolve(name, self.name, self._remappings)
-
-    def call_master(self, method: str, *arguments: Any, timeout: float = CALL_TIMEOUT) -> Any:
-        """Call the master's API; the node's name is put first. Returns the value; raises Fault, Unreachable, CallTimeout."""
-        return self.call_master_async(method, *arguments).result(timeout)
-
-    def call_master_async(self, method: str, *arguments: Any) -> Future[Any]:
-        """`call_master` without waiting: a Future of the value."""
-        self._check_open()
-        future: Future[Any] = Future(self.reactor, f"{method} of the master at {self._engine.master_uri}")
-        with self.reactor.lock:
-            self._engine.call_master(method, [self.name, *arguments], _into(future), self.reactor.now())
-            self._update()
-        return future
-
-    def call_node(self, uri: str, method: str, *arguments: Any, timeout: float = CALL_TIMEOUT) -> Any:
-        """Call the slave API of the node at `uri`; this node's name is put first."""
-        future: Future[Any] = Future(self.reactor, f"{method} of {uri}")
-        with self.reactor.lock:
-            self._engine.call_slave(uri, method, [self.name, *arguments], _into(future), self.reactor.now())
-            self._update()
-        return future.result(timeout)
 
     @property
     def uri(self) -> str:
@@ -376,44 +305,6 @@ class Node:
     def counters(self) -> dict[str, int]:
         """What was dropped or refused, by its named reason."""
         return dict(self._engine.counters)
-
-    def system_state(self) -> tuple[dict[str, list[str]], dict[str, list[str]], dict[str, list[str]]]:
-        """Three dicts: topic -> publishers, topic -> subscribers, service -> providers."""
-        state = self.call_master("getSystemState")
-        publishers, subscribers, services = (
-            {str(n): [str(x) for x in who] for n, who in part} for part in state
-        )
-        return publishers, subscribers, services
-
-    def topics(self) -> dict[str, str]:
-        """Every topic the master knows, with its type."""
-        return {str(topic): str(kind) for topic, kind in self.call_master("getTopicTypes")}
-
-    def nodes(self) -> list[str]:
-        """Every node that has something registered, sorted."""
-        return sorted({name for part in self.system_state() for names in part.values() for name in names})
-
-    def services(self) -> list[str]:
-        """Every service the master knows, sorted."""
-        return sorted(self.system_state()[2])
-
-    def topic_type(self, topic: str) -> str | None:
-        """The type of a topic; None where the master does not know it."""
-        return self.topics().get(self.resolve(topic))
-
-    def lookup_node(self, name: str) -> str | None:
-        """The URI of a node's slave API; None where the master does not know it."""
-        try:
-            return str(self.call_master("lookupNode", self.resolve(name)))
-        except Fault:
-            return None
-
-    def lookup_service(self, name: str) -> str | None:
-        """The rosrpc:// URI of a service; None where there is none."""
-        try:
-            return str(self.call_master("lookupService", self.resolve(name)))
-        except Fault:
-            return None
 
     # -- running
 
@@ -486,7 +377,7 @@ class Node:
             engine.registrations.forget()
             for method, arguments in calls:
                 future: Future[Any] = Future(self.reactor, method)
-                engine.call_master(method, arguments, _into(future), self.reactor.now())
+                engine.call_master(method, arguments, into(future), self.reactor.now())
                 left.append(future)
             self._update()
         self.reactor.run_until(
@@ -619,16 +510,6 @@ class Node:
             if not self.is_shutdown:
                 self._engine.withdraw_service(entry, self.reactor.now())
                 self._update()
-
-
-def _into(future: Future[Any]) -> Callable[[object, Exception | None, float], None]:
-    def done(value: object, error: Exception | None, now: float) -> None:
-        if error is None:
-            future.set_result(value)
-        else:
-            future.set_exception(error)
-
-    return done
 
 
 def _qos(qos: QoS | int | None) -> QoS:
