@@ -309,8 +309,8 @@ def run(host: str = "0.0.0.0", port: int = DEFAULT_PORT) -> int:
 
     # As Ctrl-C: a handler that only set a flag would not end the loop's sleep.
     previous = signal.signal(signal.SIGTERM, signal.default_int_handler)
-    print(f"ROS_MASTER_URI={server.uri}", flush=True)
     try:
+        print(f"ROS_MASTER_URI={server.uri}", flush=True)
         loop.run_until(server.stopped.is_set)
     except KeyboardInterrupt:
         pass
