@@ -33,15 +33,22 @@ else:  # pragma: no cover - other systems than Linux
 
 # The longest sleep of an idle loop: bounds the harm of a wake-up that got lost. Seconds.
 MAX_SLEEP = 60.0
-# Seconds to look for input before sleeping, while the sleeps are shorter than this anyway. A stream of messages that are
-# further apart never pays for it.
-BUSY_WAIT = 100e-6
+# Seconds to look for input before sleeping, where the last sleep was shorter than BRISK: two programs that answer each
+# other otherwise wake each other up, on an idle processor for 100 us each time, and never find out of it. Messages that
+# come at long intervals never pay for this; those at middling ones soon stop paying.
+BUSY_WAIT = 250e-6
+BRISK = 500e-6
+# After this many looks in vain the loop looks once in 2 to this power sleeps.
+MAX_VAIN = 10
 # Seconds the background thread waits after a spin before it takes the loop back.
 LINGER = 0.005
 
 
 def _poller() -> Any:
     return select.epoll() if hasattr(select, "epoll") else select.poll()
+
+
+_yield = getattr(os, "sched_yield", lambda: None)
 
 
 def _processors() -> int:
@@ -117,6 +124,8 @@ class Reactor:
         # Seconds; 0 turns it off, as on a machine where the other side needs this very processor to answer.
         self.busy_wait = BUSY_WAIT if _processors() > 1 else 0.0
         self._brisk = False  # whether the last sleep was a short one
+        self._vain = 0  # looks in vain since the last good one
+        self._skips = 0  # sleeps before the next look
         self._wake_read, self._wake_write = os.pipe()
         os.set_blocking(self._wake_read, False)
         os.set_blocking(self._wake_write, False)
@@ -335,21 +344,27 @@ class Reactor:
 
     def _wait(self, poller: Any, pause: float) -> Any:
         """What is ready within `pause` seconds. While input comes in quick succession, look again and again for a
-        moment before sleeping: waking up costs tens of microseconds, more than handling a small message."""
+        moment before sleeping: waking up costs tens of microseconds, more than handling a small message. Looking in
+        vain is paid for by not looking at all for a while, twice as long each time."""
         if self._brisk and pause:
-            end = monotonic() + self.busy_wait
-            while True:
-                ready = poller.poll(0)
-                if ready:
-                    return ready
-                now = monotonic()
-                if now >= end:
-                    break
-            self._brisk = False
-            pause = max(0.0, pause - self.busy_wait)
+            if self._skips:
+                self._skips -= 1
+            else:
+                end = monotonic() + self.busy_wait
+                while True:
+                    ready = poller.poll(0)
+                    if ready:
+                        self._vain = 0
+                        return ready
+                    if monotonic() >= end:
+                        break
+                    _yield()  # the other side may be waiting for this very processor
+                self._vain = min(self._vain + 1, MAX_VAIN)
+                self._skips = (1 << self._vain) - 1
+                pause = max(0.0, pause - self.busy_wait)
         begin = monotonic()
         ready = poller.poll(pause * _SCALE)
-        self._brisk = bool(ready) and monotonic() - begin < self.busy_wait
+        self._brisk = bool(ready) and monotonic() - begin < BRISK and self.busy_wait > 0.0
         return ready
 
     def _run_soon(self, queue: deque[Callable[[], None]], locked: bool) -> None:
