@@ -1,0 +1,174 @@
+"""`roslet demo`: that it works, and that it would notice if it did not."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import signal
+import struct
+import subprocess
+import sys
+import time
+import zlib
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from roslet.cli.demo import floor
+from roslet.cli.demo.programs import Programs, folder
+from roslet.cli.demo.show import HEIGHT, WIDTH, judge, png_size
+
+Start = Callable[..., "subprocess.Popen[Any]"]
+
+
+def png(width: int, height: int, rows: int) -> bytes:
+    def chunk(name: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    header = struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0)
+    data = zlib.compress(bytes(rows * (1 + 3 * width)))
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", data) + chunk(b"IEND", b"")
+
+
+def figures(**changes: Any) -> dict[str, dict[str, Any]]:
+    """What four programs report when all is right, with some of it changed: talker_sent=9."""
+    right: dict[str, dict[str, Any]] = {
+        "talker": {
+            "sent": 10,
+            "returned": 10,
+            "altered": 0,
+            "round_trips": [0.001, 0.002, 0.003],
+            "final": True,
+        },
+        "listener": {"heard": 10, "wrong": 0, "final": True},
+        "camera": {"sent": 5, "final": True},
+        "viewer": {"received": 5, "wrong": 0, "final": True},
+    }
+    for change, value in changes.items():
+        program, _, key = change.partition("_")
+        right[program][key] = value
+    return right
+
+
+@pytest.fixture
+def picture(tmp_path: pathlib.Path) -> pathlib.Path:
+    path = tmp_path / "image.png"
+    path.write_bytes(png(WIDTH, HEIGHT, HEIGHT))
+    return path
+
+
+def test_when_all_is_right_there_are_no_problems(picture: pathlib.Path) -> None:
+    result = judge(figures(), [0.001], picture)
+    assert result["problems"] == []
+    assert [row["right"] for row in result["topics"]] == [True, True, True]
+    assert result["round_trip"]["median"] == 0.002
+
+
+@pytest.mark.parametrize(
+    "changes, topic",
+    [
+        ({"listener_heard": 9}, "/ping"),
+        ({"listener_wrong": 1}, "/ping"),
+        ({"talker_returned": 9}, "/pong"),
+        ({"talker_altered": 1}, "/pong"),
+        ({"viewer_received": 4}, "/image"),
+        ({"viewer_wrong": 1}, "/image"),
+        ({"camera_sent": 0, "viewer_received": 0}, "/image"),
+        ({"talker_round_trips": []}, "no round trip"),
+    ],
+)
+def test_whatever_is_lost_or_altered_or_missing_is_a_problem(
+    changes: dict[str, Any], topic: str, picture: pathlib.Path
+) -> None:
+    problems = judge(figures(**changes), [0.001], picture)["problems"]
+    assert any(problem.startswith(topic) for problem in problems)
+
+
+def test_programs_that_said_nothing_are_problems(tmp_path: pathlib.Path) -> None:
+    nothing: dict[str, dict[str, Any]] = {name: {} for name in ("talker", "listener", "camera", "viewer")}
+    assert len(judge(nothing, [], tmp_path / "none.png")["problems"]) == 6
+
+
+@pytest.mark.parametrize(
+    "data, complaint",
+    [
+        (b"", "no PNG file"),
+        (png(4, 3, 3)[:-12], "not whole"),
+        (png(4, 3, 2), "not as many rows"),
+        (png(4, 3, 3).replace(b"IHDR\x00\x00\x00\x04", b"IHDR\x00\x00\x00\x05"), "damaged"),
+    ],
+)
+def test_a_picture_that_is_none_is_told(data: bytes, complaint: str) -> None:
+    assert png_size(png(4, 3, 3)) == (4, 3)
+    with pytest.raises(ValueError, match=complaint):
+        png_size(data)
+
+
+def test_the_floor_is_timed_with_a_process_of_its_own() -> None:
+    trips = floor.measure(0.2, 100.0)
+    assert 1 <= len(trips) <= 21
+    assert all(trip > 0 for trip in trips)
+
+
+def test_the_whole_demo_works_and_leaves_nothing_behind(start: Start, tmp_path: pathlib.Path) -> None:
+    process = start("demo", "--seconds", 1, "--rate", 50, "--folder", tmp_path, "--json")
+    out, err = process.communicate(timeout=40)
+    result = json.loads(out)
+    assert (process.returncode, err, result["problems"]) == (0, "", [])
+    assert [(row["topic"], row["sent"], row["received"]) for row in result["topics"]] == [
+        ("/ping", 50, 50), ("/pong", 50, 50), ("/image", 10, 10),
+    ]  # fmt: skip
+    assert png_size(pathlib.Path(result["picture"]).read_bytes()) == (WIDTH, HEIGHT)
+    assert children(process.pid) == []
+
+
+def children(pid: int) -> list[int]:
+    """The processes whose parent is, or in whose command line stands, what the demo started."""
+    found = []
+    for entry in pathlib.Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+            except (OSError, IndexError, ValueError):
+                continue
+            if parent == pid:
+                found.append(int(entry.name))
+    return found
+
+
+def test_an_interrupted_demo_ends_its_processes(start: Start, tmp_path: pathlib.Path) -> None:
+    process = start("demo", "--seconds", 30, "--folder", tmp_path)
+    assert process.stdout is not None
+    for line in process.stdout:
+        if line.startswith("processes:"):
+            break
+    end = time.monotonic() + 10
+    while len(started := children(process.pid)) < 4 and time.monotonic() < end:
+        time.sleep(0.02)
+    assert len(started) == 4
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert [pid for pid in started if os.path.exists(f"/proc/{pid}")] == []
+
+
+def test_a_program_that_fails_is_told_with_its_last_words(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "bad.py").write_text("import sys\nprint('it hurts', file=sys.stderr)\nsys.exit(4)\n")
+    (tmp_path / "silent.py").write_text("")
+    (tmp_path / "endless.py").write_text("import time\ntime.sleep(60)\n")
+    monkeypatch.setattr("roslet.cli.demo.programs.folder", lambda: tmp_path)
+    with Programs("ros1://127.0.0.1:1") as programs:
+        bad, silent, endless = (programs.start(name) for name in ("bad.py", "silent.py", "endless.py"))
+        assert bad.finish(10) == "bad.py ended with exit code 4: it hurts"
+        assert silent.finish(10) == "silent.py ended without its last report"
+        assert endless.finish(0.2) == "endless.py did not end by itself"
+        assert not endless.running
+
+
+def test_the_programs_are_those_of_the_examples_folder() -> None:
+    assert folder() == pathlib.Path(__file__).resolve().parents[2] / "examples"
+    assert sys.executable
