@@ -1,0 +1,169 @@
+"""ROS names: legality, resolution, arguments, URIs. Expected values are written by hand from the ROS 1 naming rules."""
+
+import pytest
+
+from roslet.errors import InvalidName, Unsupported
+from roslet.names import (
+    MAX_NAME,
+    Arguments,
+    canonical,
+    check_base_name,
+    check_name,
+    join,
+    namespace_of,
+    parse_host_port,
+    parse_network,
+    resolve,
+)
+
+pytestmark = pytest.mark.micropython
+
+
+@pytest.mark.parametrize("name", ["", "a", "a1", "a_b", "/", "/a/b", "~", "~a", "~/a", "a/b/c", "A"])
+def test_a_legal_name_is_itself(name: str) -> None:
+    assert check_name(name) == name
+
+
+@pytest.mark.parametrize(
+    ("name", "where"),
+    [
+        ("1a", "character 1"),
+        ("_a", "character 1"),
+        ("a b", "character 2"),
+        ("a~", "character 2"),
+        ("a-b", "character 2"),
+        ("/a/b.c", "character 5"),
+        ("a\x00", "character 2"),
+        ("n\u00e4me", "character 2"),
+        ("a//b", "empty name between two slashes"),
+    ],
+)
+def test_an_illegal_name_says_where_it_is_wrong(name: str, where: str) -> None:
+    with pytest.raises(InvalidName, match=where):
+        check_name(name)
+
+
+def test_a_name_has_a_bound() -> None:
+    assert check_name("a" * MAX_NAME)
+    with pytest.raises(InvalidName, match="at most 4096"):
+        check_name("a" * (MAX_NAME + 1))
+
+
+@pytest.mark.parametrize("name", ["", "a/b", "~a", "/a"])
+def test_a_node_name_has_no_namespace(name: str) -> None:
+    with pytest.raises(InvalidName, match="no base name"):
+        check_base_name(name)
+    assert check_base_name("talker") == "talker"
+
+
+@pytest.mark.parametrize(
+    ("name", "namespace"), [("/a/b", "/a/"), ("/a", "/"), ("/", "/"), ("/a/b/", "/a/"), ("/a/b/c", "/a/b/")]
+)
+def test_the_namespace_of_a_name_ends_with_a_slash(name: str, namespace: str) -> None:
+    assert namespace_of(name) == namespace
+
+
+def test_canonical_drops_doubled_and_trailing_slashes() -> None:
+    assert canonical("//a///b/") == "/a/b"
+    assert canonical("/") == "/"
+    assert join("/a/", "b") == "/a/b"
+    assert join("/a", "") == "/a"
+    assert join("/a", "/b") == "/b"
+    assert join("", "b") == "b"
+
+
+@pytest.mark.parametrize(
+    ("name", "full"),
+    [
+        ("chatter", "/ns/chatter"),
+        ("/chatter", "/chatter"),
+        ("~rate", "/ns/node/rate"),
+        ("~/rate", "/ns/node/rate"),
+        ("~", "/ns/node"),
+        ("", "/ns"),
+        ("a/b", "/ns/a/b"),
+        ("/a/", "/a"),
+    ],
+)
+def test_a_name_resolves_by_its_first_character(name: str, full: str) -> None:
+    assert resolve(name, "/ns/node") == full
+
+
+def test_a_relative_name_in_the_root_namespace() -> None:
+    assert resolve("chatter", "/node") == "/chatter"
+    assert resolve("", "/node") == "/"
+
+
+def test_remapping_comes_after_resolution() -> None:
+    table = {"/ns/chatter": "/other"}
+    assert resolve("chatter", "/ns/node", table) == "/other"
+    assert resolve("/ns/chatter", "/ns/node", table) == "/other"
+    assert resolve("/chatter", "/ns/node", table) == "/chatter"
+
+
+def test_arguments_are_sorted_by_their_underscores() -> None:
+    given = Arguments(["a:=b", "_p:=1", "__name:=x", "__ns:=/y", "file", "--flag", ":=z", "u:=http://h:1/"])
+    assert given.remappings == {"a": "b", "u": "http://h:1/"}
+    assert given.parameters == {"p": "1"}
+    assert given.specials == {"name": "x", "ns": "/y"}
+    assert given.rest == ["file", "--flag", ":=z"]
+
+
+def test_remappings_are_resolved_on_both_sides() -> None:
+    given = Arguments(["a:=b", "~c:=/d", "/e:=~f"])
+    assert given.resolved("/ns/node") == {"/ns/a": "/ns/b", "/ns/node/c": "/d", "/e": "/ns/node/f"}
+    with pytest.raises(InvalidName):
+        Arguments(["a b:=c"]).resolved("/node")
+
+
+@pytest.mark.parametrize(
+    ("uri", "expected"),
+    [
+        ("http://host:11311/", ("host", 11311)),
+        ("http://127.0.0.1:1", ("127.0.0.1", 1)),
+        ("rosrpc://robot.local:65535", ("robot.local", 65535)),
+        ("http://[::1]:80/RPC2", ("::1", 80)),
+    ],
+)
+def test_a_uri_gives_host_and_port(uri: str, expected: "tuple[str, int]") -> None:
+    assert parse_host_port(uri) == expected
+
+
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "",
+        "host:1",
+        "http://",
+        "http://host",
+        "http://host:",
+        "http://:80",
+        "http://host:0",
+        "http://host:65536",
+        "http://host:-1",
+        "http://host:1x",
+        "http://host:\u00b2",  # a digit to str.isdigit, no number to int
+        "http://host:" + "9" * 5000,  # longer than int accepts
+        "http://ho st:80",
+        "http://host\x00:80",
+        "http://ho\nst:80",
+        "http://" + "h" * 300 + ":80",
+    ],
+)
+def test_what_is_no_uri_of_a_peer_is_refused(uri: str) -> None:
+    with pytest.raises(InvalidName):
+        parse_host_port(uri)
+
+
+def test_a_network_names_its_master() -> None:
+    assert parse_network("ros1://robot:5") == ("ros1://robot:5", "http://robot:5")
+    assert parse_network("ros1://robot") == ("ros1://robot:11311", "http://robot:11311")
+    assert parse_network("ros1://") == ("ros1://localhost:11311", "http://localhost:11311")
+    assert parse_network("ros1://", "http://m:7/") == ("ros1://m:7", "http://m:7")
+
+
+def test_other_networks_are_refused_with_a_sentence() -> None:
+    with pytest.raises(Unsupported, match="ROS 2 network"):
+        parse_network("ros2://42")
+    with pytest.raises(InvalidName, match="write ros1://host:port"):
+        parse_network("tcp://x:1")
