@@ -147,6 +147,8 @@ def test_nodes_follow_parameters_and_each_others_coming_and_going(ours: OurMaste
 
 
 def test_a_second_rospy_node_of_a_name_ends_the_first(ours: OurMaster, debian: Tools) -> None:
+    # A missing parameter is asked for anew in every turn, and each question would register the first node again.
+    debian.run("rosparam", "set", "/word", "hello")
     listener = node(ours, LISTENER)
     first = node(ours, TALKER)
     listener.wait_for("heard")
