@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 
-class Case(NamedTuple):
+@dataclass(frozen=True)
+class Case:
     type: str
     size: int  # what it means depends on the type: bytes, elements; -1 is the non-ASCII string
     count: int = 5

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from functools import partial
 from typing import Any
 
 import pytest
@@ -177,7 +178,7 @@ def datagrams_to_peer(node: Node, peer: Peer, topic: str, size: int) -> None:
         wait_until(lambda: publisher.subscriber_count == 1, "the peer subscribes")
         for i in range(5):
             publisher.publish(message("std_msgs/String", i, size))
-            wait_until(lambda i=i: len(peer.told(f"got {topic} ")) > i, "the datagrams of one message arrive")
+            peer.wait_for(f"got {topic} ", i + 1)
         assert peer.told(f"got {topic} ") == [f"got {topic} {i} ok" for i in range(5)]
         assert "UDPROS" in transports(node, topic)
     peer.ask(f"unsubscribe {topic}", f"unsubscribed {topic}")
@@ -275,6 +276,10 @@ def parameters_to_peer(node: Node, peer: Peer, name: str) -> None:
     assert peer.ask(f"get {name} int", f"missing {name}") == ""
 
 
+def _last_is(told: list[Any], value: Any) -> bool:
+    return bool(told) and told[-1] == value
+
+
 def parameters_to_us(node: Node, peer: Peer, name: str) -> None:
     """What a peer sets we read, and are told of at once where we asked to be."""
     told: list[Any] = []
@@ -283,7 +288,7 @@ def parameters_to_us(node: Node, peer: Peer, name: str) -> None:
         told.clear()
         peer.ask(f"set {name} {kind} {spelled}", f"set {name}")
         assert node.get_parameter(name) == value
-        wait_until(lambda value=value: told and told[-1] == value, f"the change to {value!r} is told")
+        wait_until(partial(_last_is, told, value), f"the change to {value!r} is told")
     assert node.has_parameter(name)
     node.delete_parameter(name)
     assert not node.has_parameter(name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pathlib
 import signal
 from collections.abc import Iterator
+from functools import partial
 
 import pytest
 
@@ -71,6 +72,10 @@ def test_a_connection_survives_the_master(mortal: Master, own: Node) -> None:
     peer.quit()
 
 
+def _counts_us(peer: Peer) -> bool:
+    return peer.subscribers("/fragile") == 1
+
+
 @pytest.mark.parametrize("kind", ["roscpp", "rospy"])
 def test_a_killed_peer_is_noticed_and_found_again(mortal: Master, own: Node, kind: str) -> None:
     inbox = Inbox()
@@ -80,7 +85,7 @@ def test_a_killed_peer_is_noticed_and_found_again(mortal: Master, own: Node, kin
         peer = Peer(kind, mortal)
         peer.ask("advertise std_msgs/String /fragile 0", "advertised /fragile")
         wait_until(lambda: subscription.publisher_count == 1, "we connect to the peer")
-        wait_until(lambda peer=peer: peer.subscribers("/fragile") == 1, "the peer counts us")
+        wait_until(partial(_counts_us, peer), "the peer counts us")
         peer.say("publish /fragile 0 5")
         inbox.wait(1)
         peer.process.send_signal(signal.SIGKILL)

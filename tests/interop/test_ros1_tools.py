@@ -220,7 +220,7 @@ def test_rosbag_records_what_we_publish_and_plays_it_to_us(node: Node, tools: To
     publishers = [node.publisher(name, kind) for name, kind, _ in cases]
     recorder = tools.start("rosbag", "record", "-O", str(bag), *(name for name, _, _ in cases))
     for publisher in publishers:
-        wait_until(lambda publisher=publisher: publisher.subscriber_count == 1, "rosbag record subscribes")
+        assert publisher.wait_for_subscribers(1, timeout=20), "rosbag record subscribes"
     for i in range(5):
         for publisher, (_, kind, size) in zip(publishers, cases, strict=True):
             publisher.publish(message(kind, i, size))
