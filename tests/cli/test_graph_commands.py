@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import pathlib
+import socket
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -12,6 +14,7 @@ import pytest
 
 import roslet
 from roslet.master.server import MasterServer
+from roslet.wire.xmlrpc import emit_response
 
 Run = Callable[..., Any]
 
@@ -365,3 +368,37 @@ def test_a_parameter_file_that_is_wrong_is_named(
     assert outcome.err.startswith(f"roslet: {tmp_path / 'file'}: ")
     (tmp_path / "file").write_text("5")
     assert "expected names and values, not int" in run("param", "load", tmp_path / "file").err
+
+
+def test_a_node_that_hangs_up_instead_of_answering_that_it_ends_was_asked(
+    run: Run, master: MasterServer
+) -> None:
+    """rospy may do so: it closes its server before the reply is out."""
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        listener.listen()
+
+        def serve() -> None:
+            for answer in (emit_response([1, "", 7]), None):
+                connection, _ = listener.accept()
+                with connection:
+                    connection.recv(4096)
+                    if answer is not None:
+                        connection.sendall(
+                            b"HTTP/1.0 200 OK\r\nContent-Length: %d\r\n\r\n%s" % (len(answer), answer)
+                        )
+
+        thread = threading.Thread(target=serve)
+        thread.start()
+        uri = f"http://127.0.0.1:{listener.getsockname()[1]}/"
+        master.call("registerPublisher", "/hasty", "/t", "std_msgs/String", uri)
+        outcome = run("node", "kill", "/hasty")
+        thread.join(5)
+    assert (outcome.code, outcome.out) == (0, "asked /hasty to end\n")
+
+
+def test_a_node_that_cannot_be_asked_to_end_is_exit_code_3(run: Run, master: MasterServer) -> None:
+    master.call("registerPublisher", "/ghost", "/t", "std_msgs/String", "http://127.0.0.1:1/")
+    outcome = run("node", "kill", "/ghost")
+    assert outcome.code == 3
+    assert outcome.err.startswith("roslet: not asked: /ghost: 127.0.0.1:1")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from roslet.cli.graph import Graph
@@ -246,7 +247,9 @@ def run_kill(arguments: argparse.Namespace) -> int:
         uris = {node: _uri(graph, node) for node in nodes}
         for node, uri in uris.items():
             try:
-                graph.node(uri, "shutdown", "roslet node kill")
+                graph.node(uri, "getPid")
+                with suppress(Unreachable):  # it answered a moment ago, and may end before it answers this
+                    graph.node(uri, "shutdown", "roslet node kill")
                 ended.append(node)
             except (Unreachable, CallTimeout, RemoteError, ProtocolError) as error:
                 failed[node] = str(error)
