@@ -27,6 +27,7 @@ _LOCATIONS = {
     "ros1-messages": CACHE / "ros1/python",
     "rospy": pathlib.Path("/usr/lib/python3/dist-packages/rospy"),
     "genpy": pathlib.Path("/usr/lib/python3/dist-packages/genpy"),
+    "tshark": pathlib.Path("/usr/bin/tshark"),
     "rosmaster": pathlib.Path("/usr/bin/rosmaster"),
     "rostopic": pathlib.Path("/usr/bin/rostopic"),
     "rosnode": pathlib.Path("/usr/bin/rosnode"),

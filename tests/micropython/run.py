@@ -4,9 +4,10 @@ FOLDER holds a stand-in for the few parts of pytest that core tests use. One JSO
 standard output: {"file", "test", "outcome": "passed" | "failed" | "skipped", "text"}.
 """
 
-import io
 import json
 import sys
+
+import uio as io  # the built-in one: a folder of the path, such as tests/io, would hide `io`
 
 
 def report(path, name, outcome, text=""):
