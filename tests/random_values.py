@@ -16,7 +16,7 @@ from roslet.idl.records import FieldType, Message
 from roslet.wire.message import Message as MessageBase
 from roslet.wire.time import Duration, Time
 
-STYLES = ("empty", "maximal", "random", "foreign", "random")
+STYLES = ("empty", "maximal", "random", "foreign", "long")
 
 LIMITS = {
     f"{sign}int{bits}": (0, (1 << bits) - 1) if sign else (-(1 << (bits - 1)), (1 << (bits - 1)) - 1)
@@ -28,6 +28,7 @@ _ALPHABETS = {
     "random": "abcdefghijklmnopqrstuvwxyz_/0123456789 ",
     "foreign": "äß€ελλάδα漢字仮名\U0001f916\U00010348é\u0301",
     "maximal": "x",
+    "long": "abcä",
 }
 
 # A bound in bytes holds a quarter as many characters of any script.
@@ -56,7 +57,7 @@ class Values:
             if array.size is not None and (self.style == "maximal" or array.size < limit):
                 limit = min(array.size, 64)
             count = 0 if self.style == "empty" else limit
-            if self.style in ("random", "foreign"):
+            if self.style in ("random", "foreign", "long"):
                 count = self.random.randint(0, limit)
         return [self.one(kind, depth) for _ in range(count)]
 
@@ -65,7 +66,7 @@ class Values:
         if primitive is None:
             return self.message(self.resolve(kind.message), depth + 1)
         if primitive in ("string", "wstring"):
-            return self.text(kind.string_bound, primitive)
+            return self.text(kind.string_bound)
         if primitive == "time":
             return {"secs": self.number("uint32"), "nsecs": self.nanoseconds()}
         if primitive == "duration":
@@ -75,15 +76,17 @@ class Values:
     def nanoseconds(self) -> int:
         return {"empty": 0, "maximal": 999_999_999}.get(self.style, self.random.randrange(1_000_000_000))
 
-    def text(self, bound: int | None, primitive: str) -> str:
+    def text(self, bound: int | None) -> str:
         if self.style == "empty":
             return ""
         if self.style == "maximal":
             return "x" * (20 if bound is None else bound)
         limit = 12 if bound is None else min(12, bound // _WIDEST)
         alphabet = _ALPHABETS[self.style]
-        del primitive
-        return "".join(self.random.choice(alphabet) for _ in range(self.random.randint(0, limit)))
+        shortest = 0
+        if self.style == "long" and bound is None:  # about as long as what is treated in another way
+            shortest, limit = 100, 140
+        return "".join(self.random.choice(alphabet) for _ in range(self.random.randint(shortest, limit)))
 
     def number(self, primitive: str) -> bool | int | float:
         if primitive == "bool":

@@ -51,7 +51,7 @@ TYPES: dict[Any, list[str]] = {
         "example_interfaces/srv/AddTwoInts_Request",
     ],
 }
-STYLES = ("empty", "random", "foreign")
+STYLES = ("empty", "random", "foreign", "long")
 
 
 def cases(dialect: Any) -> list[str]:

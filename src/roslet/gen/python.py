@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from roslet.gen.lines import render
-from roslet.gen.python_codec import Deserializer, Serializer
+from roslet.gen.python_read import Deserializer
+from roslet.gen.python_write import Serializer
 from roslet.gen.python_names import attribute, class_reference
 from roslet.idl.records import Service
 from roslet.layout import PRIMITIVE_SIZE
@@ -26,8 +27,14 @@ PRELUDE = {
     "_decode_wide": "decode_wide",
     "_encode_wide": "encode_wide",
     "_new": "new",
+    "_bytes_packer": "bytes_packer",
     "_packer": "packer",
     "_packers": "packers",
+    "_padded_text_packers": "padded_text_packers",
+    "_padded_text_unpackers": "padded_text_unpackers",
+    "_text_bytes_packers": "text_bytes_packers",
+    "_text_packers": "text_packers",
+    "_text_unpackers": "text_unpackers",
     "_unpacker": "unpacker",
 }
 """Globals of generated code that `roslet.wire.primitives` has, and their names there."""
@@ -55,10 +62,19 @@ def serializer(layout: Layout) -> Method:
 
 
 def deserializer(layout: Layout) -> Method:
-    """`deserialize_from` of a message, to be wrapped in `classmethod`."""
+    """The function `_read` of a message, which as a class method is its `deserialize_from` and
+    its `deserialize`."""
     codec = Deserializer(layout)
     block = list(codec.source())
     return Method(block, codec.globals_, codec.references)
+
+
+def bytes_serializer(layout: Layout) -> Method | None:
+    """`serialize` of a message that one `struct` call makes; None for others, which inherit it."""
+    codec = Serializer(layout)
+    codec.prefix = "make"
+    block = codec.whole()
+    return None if block is None else Method(block, codec.globals_, codec.references)
 
 
 def initializer(message: Message) -> Method:

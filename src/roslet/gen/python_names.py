@@ -42,7 +42,7 @@ class Locals:
     def __init__(self) -> None:
         self.used = set(RESERVED)
         self.used.update(["buffer", "offset", "parts", "cls", "start", "end", "base", "error", "message"])
-        self.used.update(["o", "e", "n", "p", "data", "kind"])
+        self.used.update(["o", "e", "n", "p", "m", "raw", "data", "kind"])
         self.used.update(
             ["len", "range", "type", "str", "bytes", "ValueError", "int", "list", "True", "False"]
         )

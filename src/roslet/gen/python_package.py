@@ -119,7 +119,9 @@ def _message_module(registry: Registry, message: Message) -> str:
     laid_out = layout(message, registry.message, ROS1 if dialect == "ros1" else CDR)
     references: dict[str, Any] = {}
     spec = list(python.spec_source(message, references))
-    methods = [python.initializer(message), python.serializer(laid_out), python.deserializer(laid_out)]
+    initializer, reader = python.initializer(message), python.deserializer(laid_out)
+    writer, whole = python.serializer(laid_out), python.bytes_serializer(laid_out)
+    methods = [initializer, writer, reader, *([] if whole is None else [whole])]
     globals_: dict[str, str] = {}
     for method in methods:
         globals_.update(method.globals_)
@@ -128,10 +130,18 @@ def _message_module(registry: Registry, message: Message) -> str:
     body += _facts(registry, message, laid_out)
     body += spec
     body += ["%s = %r" % (constant.name, constant.value) for constant in message.constants]
-    body += ["", *methods[0].block, "", *methods[1].block, "", "@classmethod", *methods[2].block]
-    lines = [MARK % message.name.text(dialect), "", *_imports(message.name, references, body, globals_), ""]
+    body += ["", *initializer.block, "", *writer.block]
+    if whole is not None:
+        body += ["", *whole.block]
+    body += ["", "deserialize = deserialize_from = classmethod(_read)"]
+    lines = [
+        MARK % message.name.text(dialect),
+        "",
+        *_imports(message.name, references, [*reader.block, *body], globals_),
+        "",
+    ]
     lines += ["%s = %s" % item for item in sorted(globals_.items())]
-    return render([*lines, "", "", "class %s(Message):" % message.name.name, body])
+    return render([*lines, "", "", *reader.block, "", "", "class %s(Message):" % message.name.name, body])
 
 
 def _facts(registry: Registry, message: Message, laid_out: Any) -> Iterator[str | Block]:
@@ -166,7 +176,10 @@ def _imports(
     if arrays:
         yield "from roslet.wire.arrays import " + ", ".join(arrays)
     rescue = ["rescue_read as _rescue_read", "rescue_write as _rescue_write"]
-    yield "from roslet.wire.message import " + ", ".join(["Message", *rescue])
+    whole = ["deserialize_any as _deserialize"]
+    if "_serialize(self)" in text:
+        whole.append("serialize_any as _serialize")
+    yield "from roslet.wire.message import " + ", ".join(["Message", *whole, *rescue])
     used = [
         "%s as %s" % (there, here)
         for here, there in sorted(python.PRELUDE.items())

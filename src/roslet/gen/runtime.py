@@ -14,7 +14,15 @@ from roslet.layout.operations import Layout
 from roslet.wire import primitives
 from roslet.wire.arrays import numbers, octets, place
 from roslet.wire.cdr import HEADER_SIZE
-from roslet.wire.message import Action, Message, Service, rescue_read, rescue_write
+from roslet.wire.message import (
+    Action,
+    Message,
+    Service,
+    deserialize_any,
+    rescue_read,
+    rescue_write,
+    serialize_any,
+)
 from roslet.wire.time import Duration, Time
 
 TYPE_CHECKING = False
@@ -250,6 +258,7 @@ class _Builder:
         self.message = message
         self.dialect = message.dialect
         self.made: Layout | None = None
+        self.reader: Any = None
 
     def layout(self) -> Layout:
         if self.made is None:
@@ -283,8 +292,14 @@ class _Builder:
     def serialize(self) -> Any:
         return self.compile(python.serializer(self.layout()), "serialize_into")
 
+    def serialize_whole(self) -> Any:
+        method = python.bytes_serializer(self.layout())
+        return serialize_any if method is None else self.compile(method, "serialize")
+
     def deserialize(self) -> Any:
-        return classmethod(self.compile(python.deserializer(self.layout()), "deserialize_from"))
+        if self.reader is None:
+            self.reader = classmethod(self.compile(python.deserializer(self.layout()), "_read"))
+        return self.reader
 
     def header(self) -> int:
         return HEADER_SIZE if self.dialect == "ros2" else 0
@@ -326,6 +341,8 @@ _PRELUDE: dict[str, Any] = {
     "_numbers": numbers,
     "_octets": octets,
     "_place": place,
+    "_deserialize": deserialize_any,
+    "_serialize": serialize_any,
     "_rescue_read": rescue_read,
     "_rescue_write": rescue_write,
 }
@@ -354,7 +371,9 @@ def _message_class(message: records.Message) -> type[Message]:
     lazy: list[Any] = [
         _Method("__init__", builder.initialize),
         _Method("serialize_into", builder.serialize),
+        _Method("serialize", builder.serialize_whole),
         _Method("deserialize_from", builder.deserialize),
+        _Method("deserialize", builder.deserialize),
         _Fact("_fixed_size", builder.fixed_size),
         _Fact("_minimum_size", builder.minimum_size),
         _Fact("_maximum_size", builder.maximum_size),

@@ -14,7 +14,7 @@ numpy is imported when the first array type is asked for, never before: `import 
 import struct
 import sys
 
-from roslet.wire.primitives import BOOL, CPYTHON
+from roslet.wire.primitives import BOOL, CPYTHON, MAX_TABLE, number_packers
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -74,6 +74,7 @@ class Numbers:
         self.code = TYPECODES[primitive]
         self.size = struct.calcsize("<" + self.code)
         self.numpy = numpy
+        self.packers = number_packers(self.code)
         if numpy is not None:
             name = "?" if primitive == "bool" else "<" + self.code.replace("b", "i1").replace("B", "u1")
             self.type: Any = numpy.ndarray
@@ -109,6 +110,8 @@ class Numbers:
                 return bytes([BOOL[element] for element in value])
             if not CPYTHON:
                 _check_range(value, self.code, self.size)
+            if len(value) < MAX_TABLE:
+                return self.packers[len(value)](*value)  # type: ignore[no-any-return]
             return struct.pack("<%d%s" % (len(value), self.code), *value)
         if CPYTHON:
             return self._raw_buffer(value)

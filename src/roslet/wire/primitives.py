@@ -29,6 +29,74 @@ def packers(form: str, align: int) -> "tuple[Callable[..., None], ...]":
     return tuple([packer("<%dx%s" % (pad, form[1:]) if pad else form) for pad in range(align)])
 
 
+MAX_TABLE = 1024
+"""Formats that one table of string lengths keeps; what is beyond is made anew each time."""
+
+
+class _Table(dict):  # type: ignore[type-arg]
+    """Functions of one format with a string in it, by the string's length; made when first asked for."""
+
+    def __init__(self, make: "Callable[[int], Callable[..., Any]]") -> None:
+        self.make = make
+
+    def __missing__(self, key: int) -> "Callable[..., Any]":
+        made = self.make(key)
+        if len(self) < MAX_TABLE:
+            self[key] = made
+        return made
+
+
+class _Maker:
+    """The same for MicroPython, whose dict calls no `__missing__`: nothing is kept, and little is made."""
+
+    def __init__(self, make: "Callable[[int], Callable[..., Any]]") -> None:
+        self.make = make
+
+    def __getitem__(self, key: int) -> "Callable[..., Any]":
+        return self.make(key)
+
+
+_by_length: "Any" = _Table if CPYTHON else _Maker
+
+
+def text_packers(head: str, tail: str, terminator: int) -> "Any":
+    """`text_packers(head, tail, terminator)[size]` packs `head`, a string in `size` + `terminator` bytes (NULs behind
+    it), and `tail`."""
+    return _by_length(lambda size: packer("<%s%ds%s" % (head, size + terminator, tail)))
+
+
+def padded_text_packers(head: str, tail: str, terminator: int) -> "Any":
+    """The same with up to seven bytes of padding in front; the key is `size << 3 | padding`."""
+    return _by_length(lambda key: packer("<%dx%s%ds%s" % (key & 7, head, (key >> 3) + terminator, tail)))
+
+
+def text_bytes_packers(head: str, tail: str, terminator: int) -> "Any":
+    """As `text_packers`, but what they pack they return."""
+    return _by_length(lambda size: bytes_packer("<%s%ds%s" % (head, size + terminator, tail)))
+
+
+def number_packers(code: str) -> "Any":
+    """`number_packers(code)[count]` returns the bytes of `count` numbers."""
+    return _by_length(lambda count: bytes_packer("<%d%s" % (count, code)))
+
+
+def text_unpackers(tail: str, terminator: int) -> "Any":
+    """`text_unpackers(tail, terminator)[size]` unpacks a string of `size` bytes, of which `terminator` are left out, and
+    `tail`."""
+    return _by_length(
+        lambda size: unpacker("<%ds%dx%s" % (max(size - terminator, 0), min(size, terminator), tail))
+    )
+
+
+def padded_text_unpackers(tail: str, terminator: int) -> "Any":
+    """The same with up to seven bytes of padding behind the string; the key is `size << 3 | padding`."""
+    return _by_length(
+        lambda key: unpacker(
+            "<%ds%dx%s" % (max((key >> 3) - terminator, 0), min(key >> 3, terminator) + (key & 7), tail)
+        )
+    )
+
+
 if CPYTHON:
     FAILURES: "tuple[type[Exception], ...]" = (
         struct.error,
@@ -43,6 +111,10 @@ if CPYTHON:
     def packer(form: str) -> "Callable[..., None]":
         """`pack_into` of one format: call it with buffer, offset, values."""
         return struct.Struct(form).pack_into
+
+    def bytes_packer(form: str) -> "Callable[..., bytes]":
+        """`pack` of one format: call it with the values."""
+        return struct.Struct(form).pack
 
     def unpacker(form: str) -> "Callable[..., tuple[Any, ...]]":
         """`unpack_from` of one format: call it with buffer, offset."""
@@ -82,6 +154,14 @@ else:
             pack_into(form, buffer, offset, *values)
 
         return pack_zeroed
+
+    def bytes_packer(form: str) -> "Callable[..., bytes]":
+        pack = struct.pack
+
+        def make(*values: object) -> bytes:
+            return pack(form, *values)
+
+        return make
 
     def unpacker(form: str) -> "Callable[..., tuple[Any, ...]]":
         unpack_from = struct.unpack_from

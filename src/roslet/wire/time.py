@@ -203,7 +203,7 @@ class Duration(_Seconds):
         if isinstance(divisor, Duration):
             return self.to_nsec() // divisor.to_nsec()
         if isinstance(divisor, (int, float)):
-            return type(self)(0, int(self.to_nsec() // divisor))
+            return type(self)(float(self.to_sec() // divisor))  # whole seconds, as genpy divides
         return NotImplemented
 
     def __truediv__(self, divisor: "Any") -> "Any":
