@@ -160,7 +160,7 @@ def test_room_is_never_empty() -> None:
     assert collector.bodies == BODIES
 
 
-class Trouble(Exception):
+class TroubleError(Exception):
     pass
 
 
@@ -171,14 +171,14 @@ def test_what_deliver_raises_comes_out_and_the_rest_follows() -> None:
     def deliver(view: memoryview, start: int, end: int) -> None:
         plain(view, start, end)
         if bytes(view[start:end]) == b"bad":
-            raise Trouble
+            raise TroubleError
 
     collector.receiver.deliver = deliver
     stream = frame(b"one") + frame(b"bad") + frame(b"two") + frame(b"three")
     stream += b"\x40\x00\x00\x00" + bytes(64 - len(stream) - 4)  # the chunk is full to its last byte
     room = collector.receiver.writable()
     room[: len(stream)] = stream
-    with pytest.raises(Trouble):
+    with pytest.raises(TroubleError):
         collector.receiver.received(len(stream))
     assert collector.bodies == [b"one", b"bad"]
     assert len(collector.receiver.writable()) > 0

@@ -255,7 +255,7 @@ class Subscription:
             return str(refused)
         else:
             return ""
-        self._later(uri, "refused", now)
+        self._later(uri, "refused", now, told=True)
         return "refused"
 
     def _connect(self, uri: str, value: object, awaited: "UdpReceiver | None", now: float) -> None:
@@ -275,10 +275,10 @@ class Subscription:
         if link.state == OPEN:
             self.link_opened(link, now)
 
-    def _later(self, uri: str, reason: str, now: float) -> None:
+    def _later(self, uri: str, reason: str, now: float, told: bool = False) -> None:
         pause = self._retry.get(uri, (0.0, RETRY_FIRST))[1]
         self._retry[uri] = (now + pause, min(2 * pause, RETRY_LAST))
-        if pause == 4 * RETRY_FIRST:
+        if pause == 4 * RETRY_FIRST and not told:
             # A publisher that has just closed is told by the master in a moment; a third failure is worth a line.
             self.engine.note("%s: no connection to %s: %s" % (self.topic, uri, reason))
 
@@ -311,7 +311,7 @@ class Subscription:
         if not self.closed and link.uri in self.publishers:
             if not link.refused and (link.messages or now - link.opened_at >= RETRY_LAST):
                 self._retry.pop(link.uri, None)  # it has worked: begin with short pauses again
-            self._later(link.uri, link.reason, now)
+            self._later(link.uri, link.reason, now, link.refused)
 
     def _changed(self, link: "SubscriberLink | UdpReceiver", opened: bool) -> None:
         if self.on_link is not None:

@@ -59,9 +59,12 @@ class Registrations:
 
     def _withdraw(self, method: str, arguments: "list[object]", now: float) -> None:
         def answered(value: object, error: "Exception | None", when: float) -> None:
-            if error is not None and not isinstance(error, Fault) and len(self._withdrawn) < MAX_WITHDRAWN:
+            if error is None or isinstance(error, Fault) or self._forgotten:
+                return
+            if len(self._withdrawn) < MAX_WITHDRAWN:
                 # It may only be out of reach, and still send others here.
                 self._withdrawn.append((method, arguments))
+            self._lost(error, when)
 
         self.engine.call_master(method, arguments, answered, now)
 
@@ -95,7 +98,7 @@ class Registrations:
         self._next = now + (self.retry if self.master_lost else self.check)
         if WANTED in self.entries.values():
             self._register_wanted(now)
-        elif self.entries and not self._checking and not self._asked:
+        elif (self.entries or self.master_lost) and not self._checking and not self._asked:
             self._checking = True
             self.engine.call_master("lookupNode", [self.engine.name, self.engine.name], self._checked, now)
 
