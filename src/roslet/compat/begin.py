@@ -29,6 +29,14 @@ _NAMES = {"debug": DEBUG, "info": INFO, "warn": WARN, "error": ERROR, "fatal": F
 _before: dict[int, Any] = {}
 
 
+class _Node(Node):
+    """A node whose wait for the master is told of here, in rospy's words."""
+
+    def _note(self, text: str) -> None:
+        if session.initialized:
+            super()._note(text)
+
+
 def begin_node(
     name: str,
     arguments: list[str],
@@ -46,7 +54,7 @@ def begin_node(
     # Private parameters are set when there is a master; the node itself would not wait for one.
     parameters = session.arguments.parameters
     others = [one for one in arguments[1:] if one.partition(":=")[0][1:] not in parameters or one[:1] != "_"]
-    node = Node(name, network="ros1://", arguments=others, anonymous=anonymous)
+    node = _Node(name, network="ros1://", arguments=others, anonymous=anonymous)
     log = logs.RospyLog(node)
     log.level = DEBUG  # what is logged at all is decided in `logs`
     log._publisher = None if disable_rosout else node.log._publisher
@@ -72,13 +80,8 @@ def _wait_for_master(node: Node) -> None:
         except (Unreachable, CallTimeout, Fault):
             if not told:
                 told = True
-                logs.emit(
-                    ERROR,
-                    f"Unable to immediately register with master node [{node.master_uri}]: master may not be running "
-                    "yet. Will keep trying.",
-                    None,
-                    "rosout",
-                )
+                where = f"Unable to immediately register with master node [{node.master_uri}]"
+                logs.emit(ERROR, f"{where}: master may not be running yet. Will keep trying.", None, "rosout")
         end = time.monotonic() + TRY_AGAIN
         while time.monotonic() < end:
             if session.shutting_down.wait(LOOK):

@@ -38,7 +38,12 @@ for _kind in (MessageException, SerializationError, DeserializationError):
     _kind.__module__ = "genpy.message"  # as a traceback shows it
 
 _bare_serialize = Message.serialize
-_bare_deserialize = Message.__dict__["deserialize"].__func__
+
+
+def _bare_deserialize(kind: type[Message], data: Any) -> Any:
+    return kind.deserialize_from(memoryview(data), 0, len(data))
+
+
 _dressed = False
 _adapted: set[type] = set()
 _simplifiers: dict[type, Simplifier | None] = {}
@@ -125,11 +130,15 @@ def adapt(kind: Any) -> Any:
         kind._request_class = adapt(kind.Request)
         kind._response_class = adapt(kind.Response)
     elif issubclass(kind, Message):
+        kind.__slots__ = list(kind.__slots__)  # genpy has a list; programs add to it or look for an index
         kind._slot_types = [text for _, text in kind._fields_and_types]
         for row in kind._spec:
             if not isinstance(row[1], str):
                 adapt(row[1])
         kind.__init__ = _constructor(kind)
+        # A generated class has its own of these two.
+        kind.serialize = _serialize
+        kind.deserialize = _Deserialize()
     return kind
 
 
@@ -149,21 +158,27 @@ def _constructor(kind: Any) -> Callable[..., None]:
         construct = made[0] if made else original()
         if not args and not kwds:
             construct(self)
+            given: dict[str, Any] = {}
         elif args:
             if kwds:
                 raise TypeError("Message constructor may only use args OR keywords, not both")
             if len(args) != len(names):
                 raise TypeError(f"Invalid number of arguments, args should be {names} args are{args}")
-            for name, value in zip(names, args, strict=True):
-                setattr(self, name, value)
-            return
+            if all(value is not None for value in args):
+                for name, value in zip(names, args, strict=True):
+                    setattr(self, name, value)
+                return
+            given = dict(zip(names, args, strict=True))
         else:
-            for name in kwds:
+            given = kwds
+            for name in given:
                 if name not in names:
                     raise AttributeError(f"{name} is not an attribute of {kind.__name__}")
-            construct(self, **{name: value for name, value in kwds.items() if value is not None})
+        if given:
+            given = {name: value for name, value in given.items() if value is not None}
+            construct(self, **given)
         for name in numbers:
-            if name not in kwds:
+            if name not in given:
                 setattr(self, name, getattr(self, name).tolist())
 
     return __init__

@@ -35,11 +35,15 @@ def _message(message: Message, indent: str, field_filter: FieldFilter | None) ->
     if field_filter is not None:
         wanted = field_filter(message)
         names = [name for name in names if name in wanted]
-    kinds = {row[0]: row[1] for row in message._spec}
+    octets = {
+        row[0]
+        for row, (_, text) in zip(message._spec, message._fields_and_types, strict=True)
+        if text[:6] == "uint8["
+    }
     lines = []
     for name in names:
         value = getattr(message, name)
-        if kinds[name] == "uint8" and isinstance(value, (bytes, bytearray, memoryview)):
+        if name in octets and isinstance(value, (bytes, bytearray, memoryview)):
             value = list(value)
         lines.append(f"{indent}{name}: {text_of(value, indent + '  ', field_filter)}")
     return "\n" + "\n".join(lines)
@@ -53,7 +57,7 @@ def _list(values: list[Any] | tuple[Any, ...], indent: str, field_filter: FieldF
         return str(list(values))
     dash = f"\n{indent}- "
     if isinstance(first, str):
-        return "".join([dash + plain_or_quoted(value) for value in values])
+        return "".join([dash + plain_or_quoted(value).replace("\n", "\n" + indent) for value in values])
     return "".join([dash + text_of(value, indent + "  ", field_filter) for value in values])
 
 

@@ -6,13 +6,13 @@ from struct import pack
 from typing import TYPE_CHECKING, Any
 
 from roslet.compat.callbacks import Worker
-from roslet.compat.messages import SerializationError
-from roslet.compat.rospy.exceptions import ROSException
+from roslet.compat.rospy import core
+from roslet.compat.rospy.exceptions import ROSException, ROSSerializationException
 from roslet.compat.rospy.msg import AnyMsg
 from roslet.compat.session import session
 from roslet.engine.ros1.links import PublisherLink
 from roslet.errors import InvalidMessage, NodeClosed
-from roslet.node import QoS
+from roslet.node import QoS, Subscription
 
 if TYPE_CHECKING:
     from roslet.node import Node, Publisher
@@ -66,14 +66,26 @@ class PublishedTopic:
             return
         if topics.get(self.name) is self:
             del topics[self.name]
-        if self.handle is not None:
-            self.handle.close()
+        handle = self.handle
+        if handle is None:
+            return
         if self._events is not None:
             self._events.close()
+            peers = [*handle._local, *(() if handle._entry is None else handle._entry.links)]
+            for left, peer in zip(reversed(range(len(peers))), peers, strict=True):
+                self._tell((peer, False), left)
+        if session.node is not None and handle is not session.node.log._publisher:
+            handle.close()
 
     @property
     def connections(self) -> int:
-        return 0 if self.handle is None else self.handle.subscriber_count
+        return 0 if self.handle is None else self.handle.subscriber_count + self._sets_own_clock
+
+    @property
+    def _sets_own_clock(self) -> bool:
+        """Whether this is /clock in a program that itself goes by it, as a simulator does. The node's own subscription
+        does not connect to the node."""
+        return self.name == "/clock" and not session.wall_time
 
     def _attach(self, node: Node) -> None:
         if not self.users or session.shutting_down.is_set():
@@ -103,22 +115,43 @@ class PublishedTopic:
                     self._events.put((link, opened))
 
             entry.on_link = changed
+            self._watch_local(handle)
 
-    def _tell(self, event: tuple[Any, bool]) -> None:
-        """A subscriber has come or gone: tell the listeners, outside the loop."""
+    def _watch_local(self, handle: Publisher) -> None:
+        """This program's own subscribers have no connection; the listeners hear of them all the same."""
+        attach, detach, events = handle._attach, handle._detach, self._events
+
+        def attached(subscription: Subscription) -> None:
+            attach(subscription)
+            if events is not None:
+                events.put((subscription, True))
+
+        def detached(subscription: Subscription) -> None:
+            detach(subscription)
+            if events is not None:
+                events.put((subscription, False))
+
+        handle._attach = attached  # type: ignore[method-assign]
+        handle._detach = detached  # type: ignore[method-assign]
+        for subscription in handle._local:
+            events.put((subscription, True))  # type: ignore[union-attr]
+
+    def _tell(self, event: tuple[Any, bool], left: int | None = None) -> None:
+        """A subscriber has come or gone (`left` are there): tell the listeners, outside the loop."""
         link, opened = event
         for listener in list(self.listeners):
-            if opened:
-                listener.peer_subscribe(
-                    self.name, self.publish, lambda message: self.publish_to(link, message)
-                )
-            else:
-                listener.peer_unsubscribe(self.name, self.connections)
+            try:
+                if opened:
+                    listener.peer_subscribe(self.name, self.publish, lambda m: self.publish_to(link, m))
+                else:
+                    listener.peer_unsubscribe(self.name, self.connections if left is None else left)
+            except Exception as error:
+                core.logwarn("the subscriber listener of %s failed: %s" % (self.name, error))
 
     def publish(self, message: Any) -> None:
-        """Send to all. Raises SerializationError."""
+        """Send to all. Raises ROSSerializationException."""
         handle = self.handle
-        if handle is None or (not self.latch and not handle.subscriber_count):
+        if handle is None or (not self.latch and not self.connections):
             return
         if handle._has_header and message.header.frame_id is None:
             message.header.frame_id = "0"
@@ -126,8 +159,10 @@ class PublishedTopic:
             if message.__class__ is AnyMsg:
                 message = self._known(message)
             handle.publish(message)
+            if self._sets_own_clock and session.node is not None:
+                session.node.clock.advance(message.clock.secs, message.clock.nsecs)
         except InvalidMessage as error:
-            raise SerializationError(str(error)) from None
+            raise ROSSerializationException(str(error)) from None
         except NodeClosed:
             if not session.shutting_down.is_set():
                 raise ROSException("publish() to a closed topic") from None
@@ -138,14 +173,17 @@ class PublishedTopic:
     def publish_to(self, link: Any, message: Any) -> None:
         """Send to one subscriber only."""
         handle = self.handle
-        if handle is None or not isinstance(link, PublisherLink) or link.closing:
+        if handle is None:
             return
-        if not isinstance(message, self.type):
-            message = self.data_class(message)
+        if isinstance(link, Subscription):
+            link._receive_local(handle._for_local(link, message))
+            return
+        if not isinstance(link, PublisherLink) or link.closing:
+            return
         try:
             body = message.serialize()
         except InvalidMessage as error:
-            raise SerializationError(str(error)) from None
+            raise ROSSerializationException(str(error)) from None
         with handle._lock:
             handle._queue(link, pack("<I", len(body)) + body)
 

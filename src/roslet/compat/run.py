@@ -6,6 +6,7 @@ import contextlib
 import os
 import signal
 import sys
+import threading
 import traceback
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -56,6 +57,10 @@ def run(
     except OSError as error:
         print(f"roslet run: cannot read {path}: {error.strerror}", file=sys.stderr)
         return 2
+    if threading.current_thread() is threading.main_thread():
+        # As the interpreter starts a program, whatever our caller does with signals.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
     code = _run_main(path, source)
     _end()
     return code

@@ -18,9 +18,8 @@ if TYPE_CHECKING:
 
     from roslet.node import Node
 
-# Seconds that shutting down waits for a callback that is running. rospy gives its threads 5; a program that is told to
-# end should be gone at once, and a callback that blocks is not worth more.
-JOIN_TIMEOUT = 0.2
+# Seconds for which the end of a program waits for functions of its own that run at its end in another thread.
+END_TIMEOUT = 5.0
 
 
 class Session:
@@ -30,16 +29,16 @@ class Session:
         self.lock = threading.RLock()
         self.node: Node | None = None
         self.init_arguments: tuple[object, ...] | None = None
+        self.requested = False  # somebody has asked for the end; `shutting_down` is when others are told
         self.shutting_down = threading.Event()
         self.time_known = False
         self.wall_time = True
         self.pending: list[Callable[[Node], None]] = []
-        self.threads: list[threading.Thread] = []
         self._preshutdown: list[Callable[[str], object]] = []
         self._client_hooks: list[Callable[[], object]] = []
         self._hooks: list[Callable[[str], object]] = []
         self._ended = threading.Event()
-        self._ending: int = 0
+        self._ending = 0  # the thread that ends the node
         self.load_arguments(sys.argv)
 
     def load_arguments(self, arguments: list[str] | tuple[str, ...]) -> None:
@@ -93,7 +92,7 @@ class Session:
 
     def on_client_shutdown(self, function: Callable[[], object]) -> None:
         """The same for the program's own functions, which take no argument and come first."""
-        if self._ended.is_set() or self.shutting_down.is_set():
+        if self.shutting_down.is_set():
             function()
         else:
             self._client_hooks.append(function)
@@ -105,32 +104,32 @@ class Session:
             hooks.append(function)
 
     def shut_down(self, reason: str, close: bool = True) -> None:
-        """End the node once: tell the program, then unregister. Whoever comes second, in another thread, waits until it
-        is done; called from a shutdown function it returns at once."""
+        """End the node once: the program's functions while everything still works, then the end for all who wait, then
+        the other functions, then unregister. Who comes second, in another thread, waits until it is done."""
         with self.lock:
-            first = not self.shutting_down.is_set()
-            self.shutting_down.set()
+            first = not self.requested
+            self.requested = True
             if first:
                 self._ending = threading.get_ident()
         if not first:
-            if self._ending != threading.get_ident():
-                self._ended.wait(5.0)
+            self.wait_for_end()
             return
         try:
-            for told in self._preshutdown:
-                self._run(told, reason)
             for hook in self._client_hooks:
                 self._run(hook)
-            for told in self._hooks:
+            self.shutting_down.set()
+            for told in [*self._preshutdown, *self._hooks]:
                 self._run(told, reason)
             if close and self.node is not None:
                 self.node.close()
-            for thread in self.threads:
-                if thread is not threading.current_thread() and thread.is_alive():
-                    thread.join(JOIN_TIMEOUT)
         finally:
+            self.shutting_down.set()
             self._ended.set()
-            self._ending = 0
+
+    def wait_for_end(self) -> None:
+        """Return when the node has ended, after `END_TIMEOUT` in any case; at once in the thread that ends it."""
+        if self._ending != threading.get_ident():
+            self._ended.wait(END_TIMEOUT)
 
     def _run(self, function: Callable[..., object], *arguments: str) -> None:
         try:

@@ -10,6 +10,7 @@ from roslet.compat.messages import simplify
 from roslet.compat.rospy import core
 from roslet.compat.rospy.msg import AnyMsg
 from roslet.compat.session import session
+from roslet.node import QoS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,11 +30,10 @@ class SubscribedTopic:
         self.users = 0
         self.handle: Subscription | None = None
         self.worker = Worker(f"topic {name}", self._call, queue_size)
-        numpy = hasattr(data_class, "_numpy_of")
-        self._simplify = (
-            None if data_class is AnyMsg else simplify(getattr(data_class, "_numpy_of", data_class), numpy)
-        )
-        self._headers: dict[int, tuple[Any, dict[str, str]]] = {}
+        self.type = getattr(data_class, "_numpy_of", data_class)
+        self._simplify = None
+        if data_class is not AnyMsg:
+            self._simplify = simplify(self.type, self.type is not data_class)
         self._paused: set[Any] = set()
         self._asked = False
 
@@ -63,8 +63,10 @@ class SubscribedTopic:
     def _attach(self, node: Node) -> None:
         if not self.users or session.shutting_down.is_set():
             return
-        kind = "*" if self.data_class is AnyMsg else self.data_class
-        self.handle = node.subscribe(self.name, kind, self._received, with_link=True)  # type: ignore[arg-type]
+        kind = "*" if self.data_class is AnyMsg else self.type
+        # Messages wait in the worker; what this program publishes itself must not be dropped before it gets there.
+        qos = QoS(history="keep_all")
+        self.handle = node.subscribe(self.name, kind, self._received, qos=qos, with_link=True)  # type: ignore[arg-type]
 
     # In the loop's thread: hand over, never wait.
 
@@ -91,9 +93,11 @@ class SubscribedTopic:
         elif link is None:
             # From a publisher of this very program: by way of the wire's format, as it would be under rospy.
             body = message.serialize()
-            message = self.data_class.deserialize_from(memoryview(bytearray(body)), 0, len(body))
+            message = self.type.deserialize_from(memoryview(bytearray(body)), 0, len(body))
         if self._simplify is not None:
             self._simplify(message)
+        if self.type is not self.data_class:
+            message.__class__ = self.data_class  # of the same layout
         message._connection_header = self._own_header() if link is None else link.peer_header
         for callback, argument in list(self.callbacks):
             try:
@@ -112,7 +116,9 @@ class SubscribedTopic:
             link.channel.pause(False)
 
     def _own_header(self) -> dict[str, str]:
-        publisher = self.handle._publisher if self.handle is not None else None
+        """What this program's own publisher would say of itself."""
+        node = session.node
+        publisher = node._publishers.get(self.name) if node is not None else None
         entry = publisher._entry if publisher is not None else None
         return {} if entry is None else entry.header()
 

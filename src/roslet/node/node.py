@@ -126,7 +126,8 @@ class Node(MasterApi):
 
     def _begin(self) -> None:
         """Log to /rosout, follow /clock where it is asked for, set the private parameters of the arguments."""
-        self.log._publisher = Publisher(self, "/rosout", _message_class("rosgraph_msgs/Log"), QoS(depth=100))
+        rosout = Publisher(self, "/rosout", _message_class("rosgraph_msgs/Log"), QoS(depth=100))
+        self.log._publisher = self._publishers["/rosout"] = rosout
         known = []
 
         def done(value: object, error: Exception | None, now: float) -> None:

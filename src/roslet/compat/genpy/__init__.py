@@ -21,3 +21,5 @@ __all__ = [
     "TVal",
     "Time",
 ]
+
+from roslet.compat.genpy import message, rostime  # noqa: E402, F401 - `import genpy` brings them along

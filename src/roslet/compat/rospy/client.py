@@ -91,6 +91,7 @@ def spin() -> None:
             pass
     except KeyboardInterrupt:
         core.signal_shutdown("keyboard interrupt")
+    session.wait_for_end()
 
 
 def on_shutdown(h: Callable[[], object]) -> None:
@@ -148,11 +149,36 @@ def get_param_names() -> list[str]:
 
 
 def set_param(param_name: str, param_value: Any) -> None:
-    """Set a parameter; a dictionary sets a namespace. Raises TypeError for a value that the master cannot hold."""
+    """Set a parameter; a dictionary sets a namespace. Raises TypeError for a value that the master cannot hold,
+    OverflowError for an integer of more than 32 bits."""
+    _check_integers(param_value)
+    name = names.resolve_name(param_name)
     try:
-        master.call("setParam", names.resolve_name(param_name), param_value)
+        master.call("setParam", name, param_value)
     except InvalidMessage as error:
         raise TypeError(str(error)) from None
+    _refresh(name)
+
+
+def _check_integers(value: Any) -> None:
+    if isinstance(value, int) and not -(1 << 31) <= value < 1 << 31:
+        raise OverflowError("int exceeds XML-RPC limits")
+    if isinstance(value, dict):
+        for inner in value.values():
+            _check_integers(inner)
+    elif isinstance(value, (list, tuple)):
+        for inner in value:
+            _check_integers(inner)
+
+
+def _refresh(name: str) -> None:
+    """Bring the cache up to date: the master does not tell us of what we change ourselves."""
+    node = session.node
+    if node is None:
+        return
+    for key in list(node._engine.parameters):
+        if (key + "/").startswith(name + "/") or (name + "/").startswith(key + "/"):
+            node._engine.parameters[key] = get_param(key, {})
 
 
 def search_param(param_name: str) -> str | None:
@@ -170,6 +196,7 @@ def delete_param(param_name: str) -> None:
         master.call("deleteParam", names.resolve_name(param_name))
     except (Fault, ParameterNotSet):
         raise KeyError(param_name) from None
+    _refresh(names.resolve_name(param_name))
 
 
 def has_param(param_name: str) -> bool:

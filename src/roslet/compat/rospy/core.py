@@ -89,7 +89,8 @@ def is_shutdown() -> bool:
 
 
 def is_shutdown_requested() -> bool:
-    return session.shutting_down.is_set()
+    """Whether somebody has asked for the end, even if the functions of `on_shutdown` still run."""
+    return session.requested
 
 
 def signal_shutdown(reason: str) -> None:

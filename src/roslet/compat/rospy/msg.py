@@ -21,7 +21,7 @@ class AnyMsg(Message):
     """A message of any type, as its bytes. A Subscriber with this class hears every type; `_connection_header` of what
     it gets says which (`type`, `md5sum`, `message_definition`)."""
 
-    __slots__ = ("_buff",)
+    __slots__ = ["_buff"]
 
     _type = "*"
     _md5sum = "*"

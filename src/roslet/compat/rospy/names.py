@@ -119,11 +119,9 @@ def get_resolved_mappings() -> dict[str, str]:
 
 
 def resolve_name(name: str, caller_id: str | None = None) -> str:
-    """The full name of `name` in this node, or in the node `caller_id`; remapped only for this node."""
-    if caller_id is None:
-        caller_id = session.name
-    full = _full(name, caller_id)
-    return get_resolved_mappings().get(full, full)
+    """The full name of `name` in this node, or in the node `caller_id`; remapped as soon as there is a node."""
+    full = _full(name, session.name if caller_id is None else caller_id)
+    return get_resolved_mappings().get(full, full) if session.initialized else full
 
 
 def _full(name: str, caller_id: str) -> str:
@@ -137,10 +135,12 @@ def _full(name: str, caller_id: str) -> str:
 
 
 def resolve_name_without_node_name(name: str) -> str:
-    """The full name of a name that is not private, while the node has no name yet. Raises ValueError for a private one."""
+    """The full name, remapped, of a name that is not private, while the node has no name yet. Raises ValueError for a
+    private one."""
     if is_private(name):
         raise ValueError("~name topics cannot be created before init_node() has been called")
-    return resolve_name(name)
+    full = _full(name, session.name)
+    return get_resolved_mappings().get(full, full)
 
 
 def remap_name(name: str, caller_id: str | None = None, resolved: bool = True) -> str:

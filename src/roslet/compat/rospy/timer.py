@@ -49,7 +49,7 @@ def _sleep_simulated(seconds: float) -> None:
         while begin <= (now := rostime.get_rostime()) < end and not session.shutting_down.is_set():
             condition.wait(LOOK)
     if now < begin and not session.shutting_down.is_set():
-        raise ROSTimeMovedBackwardsException((now - begin).to_sec())
+        raise ROSTimeMovedBackwardsException((begin - now).to_sec())
 
 
 class Rate:

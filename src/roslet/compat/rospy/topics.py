@@ -102,8 +102,8 @@ class Publisher(Topic):
     def publish(self, *args: Any, **kwds: Any) -> None:
         """Send a message, given as a message, by its fields in order, or some by name.
 
-        Raises ROSException before init_node and after unregister, ROSSerializationException (genpy.SerializationError)
-        for a value that a field cannot hold; neither where nobody listens.
+        Raises ROSException before init_node and after unregister, ROSSerializationException for a value that a field
+        cannot hold, but only where somebody listens.
         """
         impl = self.impl
         if impl is None:
