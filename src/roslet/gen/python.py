@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from roslet.gen.lines import render
+from roslet.gen.python_names import attribute, class_reference
 from roslet.gen.python_read import Deserializer
 from roslet.gen.python_write import Serializer
-from roslet.gen.python_names import attribute, class_reference
 from roslet.idl.records import Service
 from roslet.layout import PRIMITIVE_SIZE
 from roslet.wire.cursor import BOUNDED, FIXED, SINGLE, UNBOUNDED

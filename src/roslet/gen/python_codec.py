@@ -13,7 +13,7 @@ the end fails at the next run or at the comparison with the end. It checks every
 
 from __future__ import annotations
 
-from roslet.gen.python_names import Locals, attribute, class_reference
+from roslet.gen.python_names import Locals, class_reference
 from roslet.layout import CDR, Numbers, Octets, Run, Sequence
 from roslet.wire.cursor import SMALL_OCTETS
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from roslet.layout import Layout, Slot
-    from roslet.layout.operations import Operation, Path
+    from roslet.layout.operations import Operation
 
 # The encapsulation header of little-endian CDR without options, 00 01 00 00, as a little-endian number.
 ENCAPSULATION = 256

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from roslet.gen.python_codec import ENCAPSULATION, SHORT_TEXT, Codec, Form
 from roslet.gen.python_names import attribute
-from roslet.layout import CDR, PRIMITIVE_SIZE, Numbers, Octets, Run, Sequence, Text
+from roslet.layout import PRIMITIVE_SIZE, Numbers, Octets, Run, Sequence, Text
 from roslet.wire.arrays import TYPECODES
 from roslet.wire.message import GATHER_MINIMUM
 
@@ -371,7 +371,7 @@ class Serializer(Codec):
         else None."""
         operations = self.layout.operations
         shapes = ((Run,), (Run, Text), (Run, Text, Run))
-        if tuple(map(type, operations)) not in shapes or len(operations) > 1 and operations[1].wide:  # type: ignore[union-attr]
+        if tuple(map(type, operations)) not in shapes or (len(operations) > 1 and operations[1].wide):  # type: ignore[union-attr]
             return None
         lead = operations[0]
         holders = self.structs(self.layout, "self")

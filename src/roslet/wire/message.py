@@ -28,7 +28,7 @@ _take: "Callable[[memoryview], bytes]" = memoryview.tobytes if hasattr(memoryvie
 
 def _joined(scratch: memoryview, end: int, parts: "list[tuple[int, Any]]") -> bytes:
     """The bytes of a gathered message."""
-    pieces: "list[Any]" = []
+    pieces: list[Any] = []
     done = 0
     for offset, payload in parts:
         pieces.append(scratch[done:offset])
@@ -116,7 +116,7 @@ class Message:
             scratch = _scratches.pop()
         except IndexError:
             scratch = memoryview(bytearray(_SCRATCH))
-        parts: "list[tuple[int, Any]]" = []
+        parts: list[tuple[int, Any]] = []
         try:
             end = self.serialize_into(scratch, 0, parts)
         except BufferTooSmall as error:
