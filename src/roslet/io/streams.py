@@ -166,12 +166,14 @@ class Stream:
             self.reactor.unregister(self._fd)
 
         def begin() -> None:
-            if rest and not self.closed:
-                self._take(rest)
-            with self._want_lock:
-                if not self.closed:
-                    self.reactor.register(self._fd, self._ready_user, self._events, user=True)
-                    self._watched = True
+            try:
+                if rest and not self.closed:
+                    self._take(rest)
+            finally:  # Ctrl-C may come in a callback, and spin be called again
+                with self._want_lock:
+                    if not self.closed:
+                        self.reactor.register(self._fd, self._ready_user, self._events, user=True)
+                        self._watched = True
 
         if rest:
             self.reactor.call_soon(begin, user=True)

@@ -1,0 +1,3 @@
+from nodes import make, master
+
+__all__ = ["make", "master"]
