@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 import time
 from collections.abc import Iterator
@@ -79,3 +80,32 @@ def test_time_runs_out_for_a_thread_that_does_not_have_the_loop(reactor: Reactor
     reactor.wake()
     spinning.join(5.0)
     assert reactor._callers == 0
+
+
+def test_no_wake_is_lost_when_another_comes_while_one_is_taken(
+    reactor: Reactor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A thread wakes the loop just as the loop reads the byte of an earlier wake."""
+    read = os.read
+    woken: list[int] = []
+
+    def read_late(fd: int, size: int) -> bytes:
+        if not woken:
+            woken.append(1)
+            other = threading.Thread(target=reactor.wake)
+            other.start()
+            other.join()
+        return read(fd, size)
+
+    monkeypatch.setattr("roslet.io.select.os.read", read_late)
+    stop = threading.Event()
+    spinning = threading.Thread(target=lambda: reactor.run_until(stop.is_set, 10.0))
+    spinning.start()
+    until(lambda: reactor._owner == spinning.ident)
+    reactor.wake()
+    until(lambda: woken and not reactor._awake)
+    time.sleep(0.05)  # let it sleep again
+    stop.set()
+    reactor.wake()
+    spinning.join(5.0)
+    assert not spinning.is_alive()

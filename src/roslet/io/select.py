@@ -192,11 +192,14 @@ class Reactor:
                 return  # full: it wakes the loop as it is
 
     def _woken(self, events: int) -> None:
-        self._awake = False
         try:
             os.read(self._wake_read, 64)
         except BlockingIOError:
             return
+        finally:
+            # Not before: a byte written in between would be read here too, and every later wake would believe it still to
+            # come. Who finds this true writes nothing, and what he wants done is seen in this very turn.
+            self._awake = False
 
     # -- running
 
