@@ -372,20 +372,28 @@ class Node(MasterApi):
     def _say_goodbye(self) -> None:
         """Tell the master, and let out what has been published: a subscriber that reads gets the last message whole."""
         engine = self._engine
-        left = []
+        left: list[tuple[str, list[object], Future[Any]]] = []
         with self.reactor.lock:
             calls = [] if engine.registrations.master_lost else engine.closing_calls()
             engine.registrations.forget()
             for method, arguments in calls:
                 future: Future[Any] = Future(self.reactor, method)
                 engine.call_master(method, arguments, into(future), self.reactor.now())
-                left.append(future)
+                left.append((method, arguments, future))
             self._update()
-        self.reactor.run_until(
-            lambda: not self._shell.unsent and all(future.done() for future in left),
-            CLOSE_TIMEOUT,
-            user=False,
-        )
+
+        def said() -> bool:
+            return not self._shell.unsent and all(future.done() for _, _, future in left)
+
+        if self.reactor.run_until(said, CLOSE_TIMEOUT / 2, user=False):
+            return
+        # A Ctrl-C may have come in the midst of a call of the master, which is never answered then; the connection is stuck.
+        with self.reactor.lock:
+            for method, arguments, future in left:
+                if not future.done():
+                    engine.call_slave(engine.master_uri, method, arguments, into(future), self.reactor.now())
+            self._update()
+        self.reactor.run_until(said, CLOSE_TIMEOUT / 2, user=False)
 
     def __enter__(self) -> Node:
         return self
