@@ -21,7 +21,6 @@ check "ruff" "$python" -m ruff check
 check "format" "$python" -m ruff format --check
 check "mypy" "$python" -m mypy
 check "layers" .venv/bin/lint-imports
-check "docs" "$python" tools/check_docs.py
 if [ -n "$failed" ]; then
     echo "== FAILED before the tests:$failed" >&2
 fi
