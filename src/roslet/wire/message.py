@@ -56,6 +56,9 @@ class Message:
     takes the message out of it.
 
     Field names that are Python keywords, or names of the methods here, have a trailing underscore.
+
+    On MicroPython `struct` keeps the low bits of a single integer that is out of range where CPython raises; arrays
+    are checked on both.
     """
 
     __slots__ = ("_connection_header",)  # no field: what a rospy program is told of where a message came from
