@@ -49,7 +49,7 @@ def test_a_burst_is_lost_only_where_it_is_counted(make: Nodes) -> None:
 
 
 def test_with_keep_all_nothing_is_lost(make: Nodes) -> None:
-    a, b, publisher, got = pair(make, history="keep_all")
+    a, _b, publisher, got = pair(make, history="keep_all")
 
     def publish() -> None:
         for index in range(2000):
@@ -228,7 +228,7 @@ def test_within_a_node_every_subscription_gets_a_message_of_its_own(make: Nodes)
     a = make("a")
     publisher = a.publisher("chatter", "geometry_msgs/PointStamped")
     first, second = a.subscribe("chatter", publisher.type), a.subscribe("chatter", publisher.type)
-    message = publisher.type()
+    message: Any = publisher.type()
     message.point.x = 1.0
     publisher.publish(message)
     message.point.x = 2.0
@@ -268,7 +268,12 @@ def test_a_local_subscription_that_closes_gets_nothing_more(make: Nodes) -> None
 def test_no_callback_runs_after_close(make: Nodes) -> None:
     _, b, publisher, got = pair(make)
     subscription = b._subscriptions[0]
-    subscription._callback = lambda message: (got.append(message), subscription.close())
+
+    def callback(message: Any) -> None:
+        got.append(message)
+        subscription.close()
+
+    subscription._callback = callback
     for index in range(20):
         publisher.publish(data=str(index))
     serve(0.3)
@@ -312,9 +317,10 @@ def test_ctrl_c_in_a_callback_leaves_the_connection_whole(make: Nodes) -> None:
 
 
 def test_publishing_takes_messages_dicts_and_equal_classes_and_refuses_others(make: Nodes) -> None:
-    a, b, publisher, got = pair(make)
+    _a, b, publisher, got = pair(make)
     publisher.publish({"data": "dict"})
-    publisher.publish(publisher.type(data="message"))
+    kind: Any = publisher.type
+    publisher.publish(kind(data="message"))
     b.spin_until(lambda: len(got) == 2, 3)
     assert [message.data for message in got] == ["dict", "message"]
     from roslet.msgs.ros1.std_msgs.msg import Int32
@@ -373,7 +379,7 @@ def test_who_comes_and_goes_is_told(make: Nodes) -> None:
 
 
 def test_several_threads_may_publish_one_topic(make: Nodes) -> None:
-    _, b, publisher, got = pair(make, history="keep_all")
+    _, _b, publisher, got = pair(make, history="keep_all")
 
     def publish(name: str) -> None:
         for index in range(300):

@@ -187,8 +187,8 @@ class Subscription:
     def _usable(self, uris: "list[str]") -> "dict[str, int]":
         known: dict[str, int] = {}
         for uri in uris:
-            if uri == self.engine.uri:
-                continue
+            if uri == self.engine.uri and not self.background:
+                continue  # within a node messages need no connection
             try:
                 parse_host_port(uri)
             except InvalidName:
