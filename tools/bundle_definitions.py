@@ -137,7 +137,7 @@ def read_generated(python: str, packages: list[str]) -> dict[TypeName, str]:
 
 
 def _kind(text: str) -> Kind:
-    return KINDS[KINDS.index(text)]  # type: ignore[arg-type]
+    return KINDS[KINDS.index(text)]
 
 
 def bare(interface: Interface) -> str:

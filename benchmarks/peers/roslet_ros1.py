@@ -55,12 +55,15 @@ def env(variant):
 def version():
     from adapters import run_out
 
-    return "roslet " + run_out(PYTHON, "-c", "import sys; sys.path.insert(0, 'src'); import roslet; print(roslet.__version__)")
+    return "roslet " + run_out(
+        PYTHON, "-c", "import sys; sys.path.insert(0, 'src'); import roslet; print(roslet.__version__)"
+    )
 
 
 def make_peer(args):
-    import roslet
     from peerlib import Peer, ser_messages
+
+    import roslet
 
     class Roslet(Peer):
         def open(self):

@@ -1,5 +1,9 @@
 """Immutable value classes and name tables for the core, without dataclasses or enum (MicroPython has neither)."""
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
 
 class Record:
     """A value with named fields.
@@ -15,13 +19,13 @@ class Record:
 
     def _set(self, *values: object) -> None:
         """Set the fields, in the order of `_fields`."""
-        for name, value in zip(self._fields, values):
+        for name, value in zip(self._fields, values):  # noqa: B905 - MicroPython's zip is not strict
             setattr(self, name, value)
 
     def _values(self) -> tuple[object, ...]:
         return tuple([getattr(self, name) for name in self._fields])
 
-    def replace(self, **changes: object) -> "Record":
+    def replace(self, **changes: object) -> "Self":
         """A copy with some fields changed. Raises TypeError for a name that is no field."""
         values = []
         for name in self._fields:
@@ -31,10 +35,10 @@ class Record:
         return type(self)(*values)
 
     def __eq__(self, other: object) -> bool:
-        return type(other) is type(self) and self._values() == other._values()  # type: ignore[attr-defined]
+        return type(other) is type(self) and self._values() == other._values()
 
     def __hash__(self) -> int:
-        return hash((type(self).__name__,) + self._values())
+        return hash((type(self).__name__,) + self._values())  # noqa: RUF005 - as MicroPython compiles it
 
     def __repr__(self) -> str:
         inside = ", ".join(["%s=%r" % (name, getattr(self, name)) for name in self._fields])
