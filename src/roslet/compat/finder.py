@@ -9,7 +9,6 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import sys
-from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -45,7 +44,7 @@ NOT_HERE = {
 }
 
 
-class Finder(MetaPathFinder):
+class Finder:
     """Stands before all other finders. See the module."""
 
     def find_spec(
@@ -61,9 +60,9 @@ class Finder(MetaPathFinder):
         for known in KINDS:
             if kind == known and "." not in member and _names(top, known):
                 if not member:
-                    return ModuleSpec(fullname, _KindLoader(top, known), is_package=True)
+                    return _spec(fullname, _KindLoader(top, known), True)
                 if member.startswith("_") and member[1:] in _names(top, known):
-                    return ModuleSpec(fullname, _MemberLoader(top, known, member[1:]))
+                    return _spec(fullname, _MemberLoader(top, known, member[1:]), False)
         return None
 
     def _ours(self, fullname: str) -> ModuleSpec | None:
@@ -74,7 +73,7 @@ class Finder(MetaPathFinder):
             return None
         if found is None:
             return None
-        return ModuleSpec(fullname, _Alias(name), is_package=found.submodule_search_locations is not None)
+        return _spec(fullname, _Alias(name), found.submodule_search_locations is not None)
 
     def _package(self, name: str) -> ModuleSpec | None:
         if name in sys.builtin_module_names or name.startswith("_"):
@@ -87,7 +86,11 @@ class Finder(MetaPathFinder):
             return real
         if not has_definitions:
             raise ModuleNotFoundError(f"{name} is no part of roslet: {NOT_HERE[name]}", name=name)
-        return ModuleSpec(name, _PackageLoader(name), is_package=True)
+        return _spec(name, _PackageLoader(name), True)
+
+
+def _spec(name: str, loader: Any, is_package: bool) -> ModuleSpec:
+    return ModuleSpec(name, loader, is_package=is_package)
 
 
 def _names(package: str, kind: Kind) -> set[str]:
@@ -107,7 +110,7 @@ def _names(package: str, kind: Kind) -> set[str]:
     return found
 
 
-class _Alias(Loader):
+class _Alias:
     """One of our modules under the name that the program uses."""
 
     def __init__(self, name: str) -> None:
@@ -123,7 +126,7 @@ class _Alias(Loader):
         module.__spec__ = self.spec
 
 
-class _PackageLoader(Loader):
+class _PackageLoader:
     """A package that has nothing but definitions here."""
 
     def __init__(self, package: str) -> None:
@@ -146,7 +149,7 @@ class _PackageLoader(Loader):
         module.__getattr__ = get  # type: ignore[method-assign]
 
 
-class _KindLoader(Loader):
+class _KindLoader:
     """`package.msg` or `package.srv`: classes are made when they are asked for."""
 
     def __init__(self, package: str, kind: Kind) -> None:
@@ -175,7 +178,7 @@ class _KindLoader(Loader):
         return get
 
 
-class _MemberLoader(Loader):
+class _MemberLoader:
     """`package.msg._Name`, which genpy's generated packages have."""
 
     def __init__(self, package: str, kind: Kind, name: str) -> None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     Simplifier = Callable[[Any], None]
 
 
-class MessageException(Exception):  # noqa: N818 - the API's name
+class MessageException(Exception):
     """`genpy.MessageException`: a message cannot be filled from the values given."""
 
 
@@ -154,7 +154,7 @@ def _constructor(kind: Any) -> Callable[..., None]:
         made.append(before.make() if hasattr(before, "make") else before)
         return made[0]
 
-    def __init__(self: Any, *args: Any, **kwds: Any) -> None:  # noqa: N807 - becomes the class's method
+    def __init__(self: Any, *args: Any, **kwds: Any) -> None:
         construct = made[0] if made else original()
         if not args and not kwds:
             construct(self)

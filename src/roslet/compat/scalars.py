@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 
 WIDTH = 80
+DASH = "- "
 
 _ESCAPES = {
     "\0": "\\0",
@@ -47,8 +48,10 @@ _PRINTABLE = re.compile(r"[ -~]*")
 _NEVER_FIRST = "#,[]{}&*!|>'\"%@`"
 
 
-def double_quoted(text: str) -> str:
-    """The string between double quotes, with escapes, folded at spaces and at escapes."""
+def double_quoted(text: str, begin: int = 0) -> str:
+    """The string between double quotes, with escapes, folded at spaces and at escapes; its first line begins in column
+    `begin`."""
+    width = WIDTH - begin
     lines: list[str] = []
     line = '"'
     pending = ""  # plain characters since the last escape or line break
@@ -56,15 +59,16 @@ def double_quoted(text: str) -> str:
     for at, char in enumerate(text):
         inside = 0 < at < last
         if " " <= char <= "~" and char not in '"\\':
-            if inside and (char == " " or not pending) and len(line) + len(pending) > WIDTH:
+            if inside and (char == " " or not pending) and len(line) + len(pending) > width:
                 lines.append(line + pending + "\\")
-                line, pending = ("  \\" if char == " " else "  "), ""
+                line, pending, width = ("  \\" if char == " " else "  "), "", WIDTH
             pending += char
             continue
         line += pending + _escape(char)
         pending = ""
-        if inside and len(line) > WIDTH + 1:
+        if inside and len(line) > width + 1:
             lines.append(line + "\\")
+            width = WIDTH
             line = "  \\" if text[at + 1] == " " else "  "
     return "\n".join([*lines, line + pending + '"'])
 
@@ -80,13 +84,15 @@ def _escape(char: str) -> str:
 
 
 def plain_or_quoted(text: str) -> str:
-    """The string as an element of a list."""
+    """The string as an element of a list, after its dash."""
     if _PRINTABLE.fullmatch(text):
-        return _fold(text, "") if text and _is_plain(text) else _fold(text.replace("'", "''"), "'") + "'"
+        if text and _is_plain(text):
+            return _fold(text, DASH)[len(DASH) :]
+        return _fold(text.replace("'", "''"), DASH + "'")[len(DASH) :] + "'"
     lines_only = "\n" in text and _PRINTABLE.fullmatch(text.replace("\n", ""))
     if lines_only and " \n" not in text and "\n " not in text:
         return _lines(text.replace("'", "''"))
-    return double_quoted(text)
+    return double_quoted(text, len(DASH))
 
 
 def _is_plain(text: str) -> bool:
@@ -106,8 +112,8 @@ def _lines(text: str) -> str:
         if part.startswith("\n"):
             written += part + "\n"
         else:
-            written += _fold(part, "  " if written else "'")
-    return written + "'"
+            written += _fold(part, "  " if written else DASH + "'")
+    return written[len(DASH) :] + "'"
 
 
 def _fold(text: str, line: str) -> str:

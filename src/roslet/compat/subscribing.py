@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import traceback
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
     from roslet.node import Node, Subscription
 
+    Callback = tuple[Callable[..., object], Any]
+
 topics: dict[tuple[str, Any], SubscribedTopic] = {}
 
 
@@ -26,15 +29,17 @@ class SubscribedTopic:
     def __init__(self, name: str, data_class: Any, queue_size: int | None) -> None:
         self.name = name
         self.data_class = data_class
-        self.callbacks: list[tuple[Callable[..., object], Any]] = []
+        self.callbacks: list[Callback] = []
         self.users = 0
         self.handle: Subscription | None = None
-        self.worker = Worker(f"topic {name}", self._call, queue_size)
+        self.worker = Worker(f"topic {name}", self._work, queue_size)
         self.type = getattr(data_class, "_numpy_of", data_class)
         self._simplify = None
         if data_class is not AnyMsg:
             self._simplify = simplify(self.type, self.type is not data_class)
         self._paused: set[Any] = set()
+        self._latched: dict[Any, Any] = {}  # the last message of each latching publisher
+        self._lock = threading.Lock()
         self._asked = False
 
     def attach(self) -> None:
@@ -43,13 +48,14 @@ class SubscribedTopic:
             self._asked = True
             session.when_initialized(self._attach)
 
-    def remove(self, callback: tuple[Callable[..., object], Any] | None) -> None:
+    def remove(self, callback: Callback | None) -> None:
         """One rospy.Subscriber less; the last one ends the subscription."""
-        if callback is not None and callback in self.callbacks:
-            self.callbacks.remove(callback)
-        self.users -= 1
-        if self.users:
-            return
+        with self._lock:
+            if callback is not None and callback in self.callbacks:
+                self.callbacks.remove(callback)
+            self.users -= 1
+            if self.users:
+                return
         if topics.get((self.name, self.data_class)) is self:
             del topics[self.name, self.data_class]
         if self.handle is not None:
@@ -68,11 +74,21 @@ class SubscribedTopic:
         qos = QoS(history="keep_all")
         self.handle = node.subscribe(self.name, kind, self._received, qos=qos, with_link=True)  # type: ignore[arg-type]
 
+    def add(self, callback: Callback | None) -> None:
+        """One rospy.Subscriber more. From a latched topic it gets the last message, if there was one already."""
+        with self._lock:
+            self.users += 1
+            if callback is None:
+                return
+            self.callbacks.append(callback)
+            for message in self._latched.values():
+                self.worker.put((message, None, callback))
+
     # In the loop's thread: hand over, never wait.
 
     def _received(self, message: Any, link: Any) -> None:
         worker = self.worker
-        worker.put((message, link))
+        worker.put((message, link, None))
         if worker.size is None and len(worker) >= UNBOUNDED and link is not None and link not in self._paused:
             channel = getattr(link, "channel", None)
             if channel is not None:
@@ -81,12 +97,27 @@ class SubscribedTopic:
 
     # In the worker's thread.
 
-    def _call(self, item: tuple[Any, Any]) -> None:
-        message, link = item
+    def _work(self, item: tuple[Any, Any, Callback | None]) -> None:
+        message, link, only = item
         if self._paused and len(self.worker) < UNBOUNDED // 2:
             self._resume()
         if session.shutting_down.is_set():
             return
+        if only is not None:
+            self._call(only, message)
+            return
+        message = self._made(message, link)
+        with self._lock:
+            callbacks = list(self.callbacks)
+            if message._connection_header.get("latching") == "1":
+                if link not in self._latched:
+                    self._latched = {key: value for key, value in self._latched.items() if not _gone(key)}
+                self._latched[link] = message
+        for callback in callbacks:
+            self._call(callback, message)
+
+    def _made(self, message: Any, link: Any) -> Any:
+        """What came, as the program gets it."""
         if self.data_class is AnyMsg:
             raw, message = message, AnyMsg()
             message._buff = raw.data
@@ -99,16 +130,18 @@ class SubscribedTopic:
         if self.type is not self.data_class:
             message.__class__ = self.data_class  # of the same layout
         message._connection_header = self._own_header() if link is None else link.peer_header
-        for callback, argument in list(self.callbacks):
-            try:
-                if argument is None:
-                    callback(message)
-                else:
-                    callback(message, argument)
-            except Exception:
-                if session.shutting_down.is_set():
-                    return
-                core.logerr("bad callback: %s\n%s" % (callback, traceback.format_exc()))
+        return message
+
+    def _call(self, callback: Callback, message: Any) -> None:
+        function, argument = callback
+        try:
+            if argument is None:
+                function(message)
+            else:
+                function(message, argument)
+        except Exception:
+            if not session.shutting_down.is_set():
+                core.logerr("bad callback: %s\n%s" % (function, traceback.format_exc()))
 
     def _resume(self) -> None:
         for link in list(self._paused):
@@ -121,6 +154,11 @@ class SubscribedTopic:
         publisher = node._publishers.get(self.name) if node is not None else None
         entry = publisher._entry if publisher is not None else None
         return {} if entry is None else entry.header()
+
+
+def _gone(link: Any) -> bool:
+    """Whether a publisher's connection has ended."""
+    return link is not None and bool(link.closing)
 
 
 __all__ = ["SubscribedTopic", "topics"]

@@ -38,7 +38,7 @@ def _joined(scratch: memoryview, end: int, parts: "list[tuple[int, Any]]") -> by
     return b"".join(pieces)
 
 
-class BufferTooSmall(RosletError):  # noqa: N818 - the tree's exceptions say what is wrong
+class BufferTooSmall(RosletError):
     """The buffer given to `serialize_into` ends too early. `size` is the message's serialised size in
     bytes."""
 

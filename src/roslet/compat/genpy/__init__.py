@@ -22,4 +22,4 @@ __all__ = [
     "Time",
 ]
 
-from roslet.compat.genpy import message, rostime  # noqa: E402, F401 - `import genpy` brings them along
+from roslet.compat.genpy import message, rostime

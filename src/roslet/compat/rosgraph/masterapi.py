@@ -8,7 +8,7 @@ from roslet.compat import master
 from roslet.errors import Fault, RosletError
 
 
-class MasterException(Exception):  # noqa: N818 - the API's name
+class MasterException(Exception):
     """Base: the master could not do what it was asked."""
 
 
@@ -42,44 +42,44 @@ class Master:
             return False
         return True
 
-    def getPid(self) -> int:  # noqa: N802 - the API's name
+    def getPid(self) -> int:
         return int(self._call("getPid"))
 
-    def getUri(self) -> str:  # noqa: N802
+    def getUri(self) -> str:
         return str(self._call("getUri"))
 
-    def lookupNode(self, node_name: str) -> str:  # noqa: N802
+    def lookupNode(self, node_name: str) -> str:
         return str(self._call("lookupNode", node_name))
 
-    def lookupService(self, service: str) -> str:  # noqa: N802
+    def lookupService(self, service: str) -> str:
         return str(self._call("lookupService", service))
 
-    def getPublishedTopics(self, subgraph: str = "") -> list[list[str]]:  # noqa: N802
+    def getPublishedTopics(self, subgraph: str = "") -> list[list[str]]:
         return list(self._call("getPublishedTopics", subgraph))
 
-    def getTopicTypes(self) -> list[list[str]]:  # noqa: N802
+    def getTopicTypes(self) -> list[list[str]]:
         return list(self._call("getTopicTypes"))
 
-    def getSystemState(self) -> list[Any]:  # noqa: N802
+    def getSystemState(self) -> list[Any]:
         """Three lists: [topic, publishers], [topic, subscribers], [service, providers]."""
         return list(self._call("getSystemState"))
 
-    def getParam(self, key: str) -> Any:  # noqa: N802
+    def getParam(self, key: str) -> Any:
         return self._call("getParam", key)
 
-    def setParam(self, key: str, value: Any) -> Any:  # noqa: N802
+    def setParam(self, key: str, value: Any) -> Any:
         return self._call("setParam", key, value)
 
-    def hasParam(self, key: str) -> bool:  # noqa: N802
+    def hasParam(self, key: str) -> bool:
         return bool(self._call("hasParam", key))
 
-    def deleteParam(self, key: str) -> Any:  # noqa: N802
+    def deleteParam(self, key: str) -> Any:
         return self._call("deleteParam", key)
 
-    def searchParam(self, key: str) -> str:  # noqa: N802
+    def searchParam(self, key: str) -> str:
         return str(self._call("searchParam", key))
 
-    def getParamNames(self) -> list[str]:  # noqa: N802
+    def getParamNames(self) -> list[str]:
         return [str(name) for name in self._call("getParamNames")]
 
 

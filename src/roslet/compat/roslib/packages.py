@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 
-class InvalidROSPkgException(Exception):  # noqa: N818 - the API's name
+class InvalidROSPkgException(Exception):
     """No such package."""
 
 

@@ -15,7 +15,7 @@ Exception
 from __future__ import annotations
 
 
-class ROSException(Exception):  # noqa: N818 - the API's name
+class ROSException(Exception):
     """Base of what rospy raises to a program."""
 
 
@@ -40,7 +40,7 @@ class ROSTimeMovedBackwardsException(ROSInterruptException):
         super().__init__("ROS time moved backwards")
 
 
-class ROSInternalException(Exception):  # noqa: N818 - the API's name
+class ROSInternalException(Exception):
     """Base of what has its cause in the connections."""
 
 

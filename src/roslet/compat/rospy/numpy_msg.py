@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as _numpy  # noqa: F401 - without it this module cannot be imported, as in rospy
+import numpy as _numpy
 
 from roslet.compat.messages import adapt
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 
-class ServiceException(Exception):  # noqa: N818 - the API's name
+class ServiceException(Exception):
     """A service cannot be offered, or a call has failed. A handler that raises it sends its text to the caller."""
 
 

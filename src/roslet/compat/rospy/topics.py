@@ -146,12 +146,10 @@ class Subscriber(Topic):
                 topic = subscribing.topics[key] = SubscribedTopic(*key, queue_size)
             elif queue_size is not None:
                 topic.worker.size = queue_size
-            topic.users += 1
             self.callback = callback
             self.callback_args = callback_args
             self._entry = None if callback is None else (callback, callback_args)
-            if self._entry is not None:
-                topic.callbacks.append(self._entry)
+            topic.add(self._entry)
         topic.attach()
         self.impl: SubscribedTopic | None = topic
 

@@ -24,7 +24,7 @@ CHUNK = 64 << 10
 FIRST_LARGE = 4 << 20
 
 
-class Paused(Exception):  # noqa: N818 - no error
+class Paused(Exception):
     """Raised by `deliver` to leave the frames behind this one where they are; `received(0)` goes on with them."""
 
 
