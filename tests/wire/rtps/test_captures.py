@@ -117,7 +117,7 @@ def test_endpoints_of_the_topic(name: str, vendor: bytes) -> None:
     chatter = [value for whose, value in endpoints(name) if value.topic == "rt/chatter" and whose == vendor]
     assert sorted(value.writer for value in chatter) == [False, True]
     for value in chatter:
-        assert value.type == "std_msgs::msg::dds_::String_"
+        assert value.type_name == "std_msgs::msg::dds_::String_"
         assert value.qos.reliable
         assert value.qos.durability == qos.VOLATILE
         assert not value.expects_inline_qos

@@ -20,7 +20,7 @@ class EndpointData(Record):
     _fields = (
         "guid",
         "topic",
-        "type",
+        "type_name",
         "qos",
         "unicast",
         "multicast",
@@ -37,7 +37,7 @@ class EndpointData(Record):
         self,
         guid: bytes = GUID_UNKNOWN,
         topic: str = "",
-        type: str = "",  # noqa: A002 - the specification's word
+        type_name: str = "",
         qos: Qos = READER_DEFAULTS,
         unicast: "tuple[Locator, ...]" = (),
         multicast: "tuple[Locator, ...]" = (),
@@ -50,7 +50,7 @@ class EndpointData(Record):
     ) -> None:
         self.guid = guid
         self.topic = topic
-        self.type = type
+        self.type_name = type_name
         self.qos = qos
         self.unicast = unicast
         self.multicast = multicast
@@ -88,7 +88,7 @@ PARAMETERS = (
     Parameter(pl.PID_PARTICIPANT_GUID, "participant_guid", values.GUID),
     Parameter(pl.PID_GROUP_GUID, "group_guid", values.GUID),
     Parameter(pl.PID_TOPIC_NAME, "topic", values.STRING),
-    Parameter(pl.PID_TYPE_NAME, "type", values.STRING),
+    Parameter(pl.PID_TYPE_NAME, "type_name", values.STRING),
     Parameter(pl.PID_UNICAST_LOCATOR, "unicast", values.LOCATOR, True),
     Parameter(pl.PID_MULTICAST_LOCATOR, "multicast", values.LOCATOR, True),
     Parameter(pl.PID_EXPECTS_INLINE_QOS, "expects_inline_qos", values.BOOL),
@@ -102,7 +102,7 @@ _ABSENT = EndpointData(b"")
 _ABSENT_QOS = Qos(reliability=(0, 0), durability=-1)
 
 
-def parse(payload: "bytes | memoryview") -> EndpointData:
+def parse(payload: "bytes | bytearray | memoryview") -> EndpointData:
     """The value of a serialised payload.
 
     Raises ProtocolError: endpoint-without-guid, endpoint-without-topic, endpoint-without-type, endpoint-kind-unknown,
@@ -116,7 +116,7 @@ def parse(payload: "bytes | memoryview") -> EndpointData:
         raise ProtocolError("endpoint-kind-unknown", "%d" % guid[15])
     if not found.get("topic"):
         raise ProtocolError("endpoint-without-topic")
-    if not found.get("type"):
+    if not found.get("type_name"):
         raise ProtocolError("endpoint-without-type")
     said = {}
     for name in _QOS_NAMES:
@@ -129,7 +129,7 @@ def parse(payload: "bytes | memoryview") -> EndpointData:
     return EndpointData(**found)
 
 
-def parse_key(payload: "bytes | memoryview") -> bytes:
+def parse_key(payload: "bytes | bytearray | memoryview") -> bytes:
     """The GUID in a serialised key. Raises ProtocolError endpoint-without-guid, and what `typed.parse` raises."""
     found = typed.parse(payload, 4, len(payload), pl.encapsulation(payload), _TABLE)
     guid: bytes = found.get("guid", GUID_UNKNOWN)

@@ -167,7 +167,7 @@ def encapsulate(parameters: "list[tuple[int, bytes]]", little: bool = True) -> b
     return (PL_CDR_LE if little else PL_CDR_BE) + b"\0\0" + emit(parameters, little)
 
 
-def encapsulation(payload: "bytes | memoryview") -> int:
+def encapsulation(payload: "bytes | bytearray | memoryview") -> int:
     """The flags (bit 0: little endian) of a payload that is a parameter list; it starts at byte 4.
 
     Raises ProtocolError: payload-truncated, payload-not-a-parameter-list.

@@ -105,6 +105,10 @@ class ParticipantData(Record):
         """The serialised payload. Always says version, vendor, GUID, lease and builtin endpoints: peers require them."""
         return pl.encapsulate(typed.emit(self, PARAMETERS, _ABSENT, little), little)
 
+    def emit_key(self, little: bool = True) -> bytes:
+        """The serialised key: the GUID alone, as a departure carries it."""
+        return pl.encapsulate([(pl.PID_PARTICIPANT_GUID, self.guid)], little)
+
 
 PARAMETERS = (
     Parameter(pl.PID_PROTOCOL_VERSION, "version", values.PAIR),
@@ -130,7 +134,7 @@ _TABLE = typed.table(PARAMETERS)
 _ABSENT = ParticipantData(guid=b"", version=b"", vendor_id=b"", lease=-1, builtin_endpoints=-1)
 
 
-def parse(payload: "bytes | memoryview") -> ParticipantData:
+def parse(payload: "bytes | bytearray | memoryview") -> ParticipantData:
     """The value of a serialised payload, or of a serialised key (then only `guid` is known).
 
     Raises ProtocolError: participant-without-guid, and what `typed.parse` raises.

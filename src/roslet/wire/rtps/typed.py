@@ -54,7 +54,8 @@ def parse(
         if parameter.many:
             held = found.get(name, ())
             if len(held) < MAX_LOCATORS:
-                found[name] = held + (parameter.codec[0](data, start, stop, flags),)  # noqa: RUF005 - MicroPython
+                one = parameter.codec[0](data, start, stop, flags)
+                found[name] = held + tuple([one])
         elif name not in found:
             found[name] = parameter.codec[0](data, start, stop, flags)
     return found

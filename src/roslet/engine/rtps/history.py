@@ -1,0 +1,125 @@
+"""What a writer keeps: changes by sequence number. RTPS 2.3, 8.2.2 (HistoryCache); DDS 1.4, 2.2.3.18, 2.2.3.19."""
+
+from roslet.errors import RosletError
+from roslet.wire.rtps.data import FLAG_D
+from roslet.wire.rtps.qos import KEEP_ALL
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from roslet.wire.rtps.qos import Qos
+
+# Samples of a KEEP_ALL writer without resource limits of its own, and octets of any writer: readers that do not
+# acknowledge must not take the machine's memory.
+DEFAULT_SAMPLES = 4096
+DEFAULT_BYTES = 256 << 20
+
+
+class HistoryFull(RosletError):
+    """A KEEP_ALL writer has reached its limit, and its readers have yet to acknowledge."""
+
+
+class Change:
+    """One sample, or the end of an instance: `flags` as in DATA; `key` tells instances apart."""
+
+    __slots__ = ("flags", "inline_qos", "key", "payload", "sequence", "time")
+
+    def __init__(
+        self, sequence: int, payload: bytes, inline_qos: bytes, flags: int, time: int, key: bytes
+    ) -> None:
+        self.sequence = sequence
+        self.payload = payload
+        self.inline_qos = inline_qos
+        self.flags = flags
+        self.time = time
+        self.key = key
+
+
+class History:
+    """Changes in order. KEEP_LAST drops the oldest of an instance beyond the depth; KEEP_ALL is full at its limits."""
+
+    def __init__(self, qos: "Qos", max_bytes: int = DEFAULT_BYTES) -> None:
+        kind, depth = qos.history
+        limit = qos.resource_limits[0]
+        self.keep_all = kind == KEEP_ALL
+        self.depth = max(depth, 1)
+        self.max_samples = limit if limit > 0 else DEFAULT_SAMPLES
+        self.max_bytes = max_bytes
+        self.bytes = 0
+        self._changes: dict[int, Change] = {}
+        self._instances: dict[bytes, list[int]] = {}
+        self._first = 1  # no change below this is held
+
+    def __len__(self) -> int:
+        return len(self._changes)
+
+    def full(self, size: int) -> bool:
+        """Whether a sample of `size` octets must wait."""
+        if not self._changes:
+            return False
+        over = self.bytes + size > self.max_bytes
+        return self.keep_all and (over or len(self._changes) >= self.max_samples)
+
+    def add(self, change: Change) -> None:
+        """Keep it, and drop what KEEP_LAST no longer keeps. Raises HistoryFull."""
+        if self.full(len(change.payload)):
+            raise HistoryFull(
+                "%d samples, %d bytes are not yet acknowledged" % (len(self._changes), self.bytes)
+            )
+        if not self._changes:
+            self._first = change.sequence
+        self._changes[change.sequence] = change
+        self.bytes += len(change.payload)
+        if not self.keep_all:
+            numbers = self._instances.setdefault(change.key, [])
+            numbers.append(change.sequence)
+            if len(numbers) > self.depth:
+                self.remove(numbers[0])
+            while self.bytes > self.max_bytes and len(self._changes) > 1:
+                self.remove(self.first(0))
+
+    def get(self, sequence: int) -> "Change | None":
+        return self._changes.get(sequence)
+
+    def remove(self, sequence: int) -> None:
+        """Forget a change; one that is not there is no error."""
+        change = self._changes.pop(sequence, None)
+        if change is None:
+            return
+        self.bytes -= len(change.payload)
+        numbers = self._instances.get(change.key)
+        if numbers is not None:
+            numbers.remove(sequence)
+            if not numbers:
+                del self._instances[change.key]
+
+    def remove_through(self, sequence: int) -> None:
+        """Forget every change up to `sequence`."""
+        while self._changes:
+            first = self.first(0)
+            if first > sequence:
+                break
+            self.remove(first)
+
+    def forget_ended(self, sequence: int) -> None:
+        """Forget the ends of instances up to `sequence`."""
+        ended = [
+            one.sequence
+            for one in self._changes.values()
+            if not one.flags & FLAG_D and one.sequence <= sequence
+        ]
+        for number in ended:
+            self.remove(number)
+
+    def first(self, otherwise: int) -> int:
+        """The lowest number held, or `otherwise`."""
+        if not self._changes:
+            return otherwise
+        changes = self._changes
+        # Numbers only grow, so this walks over each gap once.
+        while self._first not in changes:
+            self._first += 1
+        return self._first
+
+    def numbers(self) -> "list[int]":
+        """What is held, in order."""
+        return sorted(self._changes)

@@ -1,0 +1,399 @@
+"""A writer and what it knows of its readers. RTPS 2.3, 8.4.7, 8.4.9 (behaviour), 8.4.2.2 (what any writer must do).
+
+One class for best effort and reliable: a best-effort reader is simply one that never answers. The number of a sample
+belongs to the writer, so a sample goes once to each distinct address, to whichever readers are there.
+"""
+
+from roslet.engine.rtps.history import Change, History
+from roslet.wire.rtps import gap, info_dst, number_set, times
+from roslet.wire.rtps.data import FLAG_D, FLAG_K, FLAG_Q, Preface
+from roslet.wire.rtps.data_frag import FLAG_K as FRAGMENT_OF_KEY
+from roslet.wire.rtps.data_frag import DataFrag
+from roslet.wire.rtps.gap import Gap
+from roslet.wire.rtps.guid import ENTITYID_UNKNOWN
+from roslet.wire.rtps.heartbeat import Heartbeat
+from roslet.wire.rtps.heartbeat_frag import HeartbeatFrag
+from roslet.wire.rtps.info_ts import InfoTimestamp
+from roslet.wire.rtps.qos import TRANSIENT_LOCAL
+from roslet.wire.rtps.submessage import FLAG_E
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from roslet.engine.rtps.outbox import Address, Datagram, Outbox
+    from roslet.wire.rtps.ack_nack import AckNack
+    from roslet.wire.rtps.endpoint_data import EndpointData
+    from roslet.wire.rtps.nack_frag import NackFrag
+
+# Every so many samples a heartbeat rides along, so that a fast writer hears of losses without a timer.
+PIGGYBACK = 16
+# Seconds from a sample to the heartbeat that asks for its acknowledgement, doubled up to the longest while nobody answers.
+HEARTBEAT_DELAY = 0.02
+HEARTBEAT_LONGEST = 1.0
+# Seconds in which a second request for the same sample by the same reader is taken for an echo of the first.
+RESEND_SUPPRESSION = 0.005
+# Octets of sample in one datagram: below the limit of UDP over IPv4 with room for the submessages before it.
+FRAGMENT_SIZE = 60000
+
+
+class ReaderProxy:
+    """A matched remote reader. `acked`: it has every sample up to this number."""
+
+    __slots__ = (
+        "acked",
+        "addresses",
+        "count",
+        "data",
+        "frag_count",
+        "guid",
+        "info_dst",
+        "preface",
+        "reliable",
+        "resent",
+        "start",
+    )
+
+    def __init__(self, remote: "EndpointData", addresses: "tuple[Address, ...]", start: int) -> None:
+        self.data = remote
+        self.guid = remote.guid
+        self.addresses = addresses
+        self.reliable = remote.qos.reliable
+        self.start = start  # samples before this one are not for it
+        self.acked = start - 1
+        self.count = -1
+        self.frag_count = -1
+        self.info_dst = bytes(info_dst.InfoDestination(remote.guid[:12]).emit())
+        self.preface: Preface | None = None
+        self.resent: dict[int, float] = {}
+
+
+class Writer:
+    """Made by `Participant.create_writer`. `counters` are the participant's."""
+
+    def __init__(
+        self,
+        endpoint: "EndpointData",
+        header: bytes,
+        outbox: "Outbox",
+        counters: "dict[str, int]",
+        epoch: int = 0,
+        fragment_size: int = FRAGMENT_SIZE,
+    ) -> None:
+        self.data = endpoint
+        self.entity_id = endpoint.guid[12:]
+        self.qos = endpoint.qos
+        self.reliable = self.qos.reliable
+        self.keeps = self.qos.durability >= TRANSIENT_LOCAL
+        self.history = History(self.qos)
+        self.proxies: dict[bytes, ReaderProxy] = {}
+        self.last = 0
+        self.fragment_size = fragment_size
+        self._header = header
+        self._outbox = outbox
+        self._counters = counters
+        self._epoch = epoch
+        self._paced = 0  # fragment runs that the outbox still holds
+        self._preface = Preface(header, self.entity_id)
+        self._addresses: tuple[Address, ...] = ()
+        self._any_reliable = False
+        self._since_heartbeat = 0
+        self._heartbeats = 0
+        self._heartbeat_at: float | None = None
+        self._delay = HEARTBEAT_DELAY
+
+    # -- what its owner does
+
+    def full(self, size: int = 0) -> bool:
+        """Whether `write` of `size` octets would raise HistoryFull."""
+        return self._any_reliable and self.history.full(size)
+
+    def write(
+        self,
+        payload: "bytes | bytearray | memoryview",
+        now: float,
+        time: "int | None" = None,
+        inline_qos: bytes = b"",
+        key: bytes = b"",
+        flags: int = FLAG_D,
+    ) -> int:
+        """Send a sample to the matched readers, and keep it as the QoS says. Returns its sequence number.
+
+        `payload` begins with its encapsulation header and may be reused as soon as the datagrams are out; `time` is
+        the source's, now where None. Raises HistoryFull.
+        """
+        if time is None:
+            time = self._epoch + int(now * 1000000000)
+        sequence = self.last + 1
+        kept = self.keeps or self._any_reliable
+        large = len(payload) > self.fragment_size
+        if kept or large:
+            payload = bytes(payload)
+            change = Change(sequence, payload, inline_qos, flags, time, key)
+            if kept:
+                self.history.add(change)
+        self.last = sequence
+        if not self._addresses:
+            return sequence
+        if large:
+            self._outbox.send_paced(self._fragments(change, None, None))
+            self._ask_soon(now)
+            return sequence
+        seconds, fraction = times.split(time)
+        size = len(inline_qos) + len(payload)
+        wire_flags = flags | FLAG_E | (FLAG_Q if inline_qos else 0)
+        if not self._any_reliable:
+            front = self._preface.emit(sequence, size, seconds, fraction, wire_flags)
+            self._outbox.send(
+                (front, inline_qos, payload) if inline_qos else (front, payload), self._addresses
+            )
+            return sequence
+        self._since_heartbeat += 1
+        if self._since_heartbeat >= PIGGYBACK:
+            pad = bytes(-size & 3)
+            front = self._preface.emit(sequence, size + len(pad), seconds, fraction, wire_flags)
+            parts = (front, inline_qos, payload, pad, self._heartbeat(ENTITYID_UNKNOWN, False).emit())
+            self._outbox.send(parts, self._addresses)
+            self._since_heartbeat = 0
+        else:
+            front = self._preface.emit(sequence, size, seconds, fraction, wire_flags)
+            self._outbox.send(
+                (front, inline_qos, payload) if inline_qos else (front, payload), self._addresses
+            )
+        self._ask_soon(now)
+        return sequence
+
+    def acknowledged(self, sequence: int) -> bool:
+        """Whether every matched reliable reader has all samples up to `sequence`."""
+        return not [one for one in self.proxies.values() if one.reliable and one.acked < sequence]
+
+    # -- matching
+
+    def match(self, remote: "EndpointData", addresses: "tuple[Address, ...]", now: float) -> bool:
+        """A reader that goes together with us. False where it was matched already; its addresses may be new."""
+        known = self.proxies.get(remote.guid)
+        if known is not None:
+            known.addresses = addresses
+            known.data = remote
+            self._refresh()
+            return False
+        late = self.keeps and remote.qos.durability >= TRANSIENT_LOCAL
+        proxy = ReaderProxy(remote, addresses, self.history.first(self.last + 1) if late else self.last + 1)
+        proxy.reliable = proxy.reliable and self.reliable
+        self.proxies[remote.guid] = proxy
+        self._refresh()
+        if late:
+            for number in self.history.numbers():
+                self._send_to(proxy, number, now)
+        if proxy.reliable:
+            self._introduce(proxy)
+            if late and len(self.history):
+                self._ask_soon(now)
+        return True
+
+    def unmatch(self, guid: bytes) -> "ReaderProxy | None":
+        """Forget a reader."""
+        proxy = self.proxies.pop(guid, None)
+        if proxy is not None:
+            self._refresh()
+            self._forget_acknowledged()
+        return proxy
+
+    def _refresh(self) -> None:
+        addresses: list[Address] = []
+        self._any_reliable = False
+        for proxy in self.proxies.values():
+            self._any_reliable = self._any_reliable or proxy.reliable
+            for address in proxy.addresses:
+                if address not in addresses:
+                    addresses.append(address)
+        self._addresses = tuple(addresses)
+        if not self._any_reliable:
+            self._heartbeat_at = None
+
+    # -- heartbeats
+
+    def _heartbeat(self, reader_id: bytes, final: bool) -> Heartbeat:
+        self._heartbeats += 1
+        first = self.history.first(self.last + 1)
+        return Heartbeat(reader_id, self.entity_id, first, self.last, self._heartbeats, final)
+
+    def _introduce(self, proxy: ReaderProxy) -> None:
+        """Tell one reader where we are; it asks for what it lacks. What is not for it is a gap."""
+        parts: list[bytes | bytearray] = [self._header, proxy.info_dst]
+        if 1 < proxy.start <= self.last + 1:
+            parts.append(Gap(proxy.guid[12:], self.entity_id, 1, number_set.NumberSet(proxy.start)).emit())
+        parts.append(self._heartbeat(proxy.guid[12:], False).emit())
+        self._outbox.send(tuple(parts), proxy.addresses)
+
+    def _ask_soon(self, now: float) -> None:
+        if self._any_reliable and self._heartbeat_at is None:
+            self._heartbeat_at = now + self._delay
+
+    def deadline(self) -> "float | None":
+        """When `handle_deadline` has something to do."""
+        return self._heartbeat_at
+
+    def handle_deadline(self, now: float) -> None:
+        """Ask for acknowledgements, ever more rarely while none come."""
+        if self._heartbeat_at is None or now < self._heartbeat_at:
+            return
+        if self._paced:
+            # Whoever is asked now would ask for fragments that are on their way.
+            self._heartbeat_at = now + HEARTBEAT_DELAY
+            return
+        self._heartbeat_at = None
+        behind = [one for one in self.proxies.values() if one.reliable and one.acked < self.last]
+        if not behind:
+            return
+        if len(behind) == 1:
+            parts = (self._header, behind[0].info_dst, self._heartbeat(behind[0].guid[12:], False).emit())
+            self._outbox.send(parts, behind[0].addresses)
+        else:
+            self._outbox.send(
+                (self._header, self._heartbeat(ENTITYID_UNKNOWN, False).emit()), self._addresses
+            )
+        self._since_heartbeat = 0
+        self._delay = min(2 * self._delay, HEARTBEAT_LONGEST)
+        self._heartbeat_at = now + self._delay
+
+    # -- what readers say
+
+    def handle_acknack(self, value: "AckNack", guid: bytes, now: float) -> None:
+        """An ACKNACK of reader `guid`: note what it has, send again what it lacks."""
+        proxy = self.proxies.get(guid)
+        if proxy is None or not proxy.reliable:
+            self._count("acknack-of-unmatched-reader")
+            return
+        if value.count == proxy.count:
+            self._count("acknack-repeated")
+            return
+        proxy.count = value.count
+        acked = min(value.state.base - 1, self.last)
+        if acked > proxy.acked:
+            proxy.acked = acked
+            self._delay = HEARTBEAT_DELAY
+            if proxy.resent:
+                proxy.resent = {number: at for number, at in proxy.resent.items() if number > acked}
+            self._forget_acknowledged()
+        asked = [number for number in value.state.numbers() if number <= self.last]
+        if asked:
+            absent = []
+            for number in asked:
+                if number < proxy.start or self.history.get(number) is None:
+                    absent.append(number)
+                elif now - proxy.resent.get(number, -1.0) >= RESEND_SUPPRESSION:
+                    proxy.resent[number] = now
+                    self._send_to(proxy, number, now)
+            if absent:
+                self._send_gaps(proxy, absent)
+            self._delay = HEARTBEAT_DELAY
+            self._heartbeat_at = None
+            self._ask_soon(now)
+        elif not value.final:
+            message = (
+                self._header,
+                proxy.info_dst,
+                self._heartbeat(proxy.guid[12:], proxy.acked >= self.last).emit(),
+            )
+            self._outbox.send(message, proxy.addresses)
+
+    def handle_nack_frag(self, value: "NackFrag", guid: bytes, now: float) -> None:
+        """A NACK_FRAG of reader `guid`: send those fragments again."""
+        proxy = self.proxies.get(guid)
+        if proxy is None or not proxy.reliable:
+            self._count("nack-frag-of-unmatched-reader")
+            return
+        if value.count == proxy.frag_count:
+            self._count("nack-frag-repeated")
+            return
+        proxy.frag_count = value.count
+        change = self.history.get(value.sequence)
+        if change is None:
+            self._send_gaps(proxy, [value.sequence])
+            return
+        if self._paced:
+            self._count("nack-frag-early")
+        else:
+            self._outbox.send_paced(self._fragments(change, proxy, value.state.numbers()))
+        self._delay = HEARTBEAT_DELAY
+        self._ask_soon(now)
+
+    def _forget_acknowledged(self) -> None:
+        least = self.last
+        for proxy in self.proxies.values():
+            if proxy.reliable and proxy.acked < least:
+                least = proxy.acked
+        if self.keeps:
+            self.history.forget_ended(least)
+        else:
+            self.history.remove_through(least)
+
+    def _send_gaps(self, proxy: ReaderProxy, absent: "list[int]") -> None:
+        """GAPs over numbers, in order: the run they begin with as a range, the rest as a set."""
+        start = base = absent[0]
+        while absent and absent[0] == base:
+            base += 1
+            absent = absent[1:]
+        message = gap.Gap(proxy.guid[12:], self.entity_id, start, number_set.of(base, absent))
+        self._outbox.send((self._header, proxy.info_dst, message.emit()), proxy.addresses)
+
+    # -- sending again
+
+    def _send_to(self, proxy: ReaderProxy, number: int, now: float) -> None:
+        change = self.history.get(number)
+        if change is None:
+            return
+        if len(change.payload) > self.fragment_size:
+            self._outbox.send_paced(self._fragments(change, proxy, None))
+            return
+        if proxy.preface is None:
+            proxy.preface = Preface(self._header, self.entity_id, proxy.guid[12:], proxy.info_dst)
+        seconds, fraction = times.split(change.time)
+        flags = change.flags | FLAG_E | (FLAG_Q if change.inline_qos else 0)
+        size = len(change.inline_qos) + len(change.payload)
+        front = proxy.preface.emit(number, size, seconds, fraction, flags)
+        self._outbox.send((front, change.inline_qos, change.payload), proxy.addresses)
+
+    def _fragments(
+        self, change: Change, proxy: "ReaderProxy | None", numbers: "list[int] | None"
+    ) -> "Iterator[Datagram]":
+        """Datagrams of fragments; to all readers (`proxy` None) or one; all of them, or those in `numbers`."""
+        size = self.fragment_size
+        total = len(change.payload)
+        count = (total + size - 1) // size
+        view = memoryview(change.payload)
+        front = self._header
+        reader_id = ENTITYID_UNKNOWN
+        if proxy is not None:
+            front += proxy.info_dst
+            reader_id = proxy.guid[12:]
+        front += bytes(InfoTimestamp(change.time).emit())
+        flags = FRAGMENT_OF_KEY if change.flags & FLAG_K else 0
+        self._paced += 1
+        for number in numbers if numbers is not None else range(1, count + 1):
+            if number > count:
+                break
+            part = view[(number - 1) * size : number * size]
+            piece = DataFrag(
+                reader_id,
+                self.entity_id,
+                change.sequence,
+                number,
+                1,
+                size,
+                total,
+                part,
+                change.inline_qos,
+                flags,
+            )
+            yield (front + piece.emit_front(), part), self._addresses if proxy is None else proxy.addresses
+        self._paced -= 1
+        if self._any_reliable:
+            tail = HeartbeatFrag(reader_id, self.entity_id, change.sequence, count, self._heartbeats + 1)
+            self._heartbeats += 1
+            parts = (self._header, proxy.info_dst if proxy is not None else b"", tail.emit())
+            yield parts, self._addresses if proxy is None else proxy.addresses
+
+    def _count(self, reason: str) -> None:
+        self._counters[reason] = self._counters.get(reason, 0) + 1
