@@ -264,6 +264,9 @@ class Reactor:
                 with self.lock:
                     self._callers -= 1
         self._owner = threading.get_ident()
+        if self._awake:
+            # It was for whoever had the turn; it must not end our first sleep.
+            self._woken(READ)
         return True
 
     def _give_up_turn(self) -> None:
