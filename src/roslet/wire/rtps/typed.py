@@ -52,10 +52,10 @@ def parse(
             continue
         name = parameter.name
         if parameter.many:
-            held = found.get(name, ())
+            held = list(found.get(name, ()))
             if len(held) < MAX_LOCATORS:
-                one = parameter.codec[0](data, start, stop, flags)
-                found[name] = held + tuple([one])
+                held.append(parameter.codec[0](data, start, stop, flags))
+                found[name] = tuple(held)
         elif name not in found:
             found[name] = parameter.codec[0](data, start, stop, flags)
     return found
