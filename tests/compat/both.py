@@ -30,13 +30,13 @@ class Both:
         environment = self.judge.environment()
         environment["ROS_PACKAGE_PATH"] = f"{WORKSPACE}:/usr/share"
         environment["PYTHONPATH"] = str(self.generated)
-        return Program([peers.DEBIAN_PYTHON, PROGRAMS / program, *arguments], environment)
+        return Program([str(peers.DEBIAN_PYTHON), str(PROGRAMS / program), *arguments], environment)
 
     def under_roslet(self, program: str | pathlib.Path, *arguments: str) -> Program:
         environment = self.master.environment()
         environment["ROS_PACKAGE_PATH"] = f"{WORKSPACE}:/usr/share"
         environment["PYTHONPATH"] = str(peers.ROOT / "src")
-        command = [sys.executable, "-m", "roslet.cli.main", "run", PROGRAMS / program, *arguments]
+        command = [sys.executable, "-m", "roslet.cli.main", "run", str(PROGRAMS / program), *arguments]
         return Program(command, environment)
 
 

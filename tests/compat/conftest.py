@@ -8,8 +8,6 @@ from collections.abc import Iterator
 
 import pytest
 
-pytest.register_assert_rewrite("interop.ros1", "compat.both")
-
 import peers  # noqa: E402
 from compat.both import WORKSPACE, Both  # noqa: E402
 from interop.ros1 import Master  # noqa: E402

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from roslet.compat.scalars import double_quoted, plain_or_quoted
 from roslet.wire.message import Message
 from roslet.wire.time import Duration, Time
 
@@ -24,6 +23,8 @@ def text_of(value: Any, indent: str = "", field_filter: FieldFilter | None = Non
     if isinstance(value, (Time, Duration)):
         return f"\n{indent}secs: {value.secs}\n{indent}nsecs: {value.nsecs:9d}"
     if isinstance(value, str):
+        from roslet.compat.scalars import double_quoted  # only a program that prints needs it
+
         return double_quoted(value) if value else "''"
     if isinstance(value, (list, tuple)):
         return _list(value, indent, field_filter)
@@ -57,6 +58,8 @@ def _list(values: list[Any] | tuple[Any, ...], indent: str, field_filter: FieldF
         return str(list(values))
     dash = f"\n{indent}- "
     if isinstance(first, str):
+        from roslet.compat.scalars import plain_or_quoted
+
         return "".join([dash + plain_or_quoted(value).replace("\n", "\n" + indent) for value in values])
     return "".join([dash + text_of(value, indent + "  ", field_filter) for value in values])
 

@@ -1,5 +1,6 @@
 """What a program finds as `genpy`: times, durations and the base of messages."""
 
+from roslet.compat.genpy import message, rostime
 from roslet.compat.messages import (
     DeserializationError,
     MessageException,
@@ -9,7 +10,7 @@ from roslet.compat.messages import (
 from roslet.wire.message import Message
 from roslet.wire.time import Duration, Time
 
-TVal = (Time, Duration)
+TVal = rostime.TVal
 dress()
 
 __all__ = [
@@ -20,6 +21,6 @@ __all__ = [
     "SerializationError",
     "TVal",
     "Time",
+    "message",
+    "rostime",
 ]
-
-from roslet.compat.genpy import message, rostime

@@ -4,19 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from roslet.compat.genpy import (
-    DeserializationError,
-    Duration,
-    Message,
-    MessageException,
-    SerializationError,
-    Time,
-)
-from roslet.compat.messages import adapt
+from roslet.compat.messages import DeserializationError, MessageException, SerializationError, adapt
 from roslet.compat.printing import text_of
 from roslet.errors import RosletError
 from roslet.gen import runtime
 from roslet.wire.cursor import SINGLE
+from roslet.wire.message import Message
+from roslet.wire.time import Duration, Time
 
 if TYPE_CHECKING:
     from collections.abc import Callable

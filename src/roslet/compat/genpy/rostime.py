@@ -1,5 +1,7 @@
 """`genpy.rostime`."""
 
-from roslet.compat.genpy import Duration, Time, TVal
+from roslet.wire.time import Duration, Time
+
+TVal = (Time, Duration)
 
 __all__ = ["Duration", "TVal", "Time"]

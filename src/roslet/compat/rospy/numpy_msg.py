@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as _numpy
+import numpy
 
 from roslet.compat.messages import adapt
+
+NUMPY = numpy.__version__  # without numpy this module cannot be imported, as in rospy
 
 _made: dict[type, type] = {}
 
