@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from roslet.errors import Fault, ParameterNotSet
-from roslet.node.future import Future
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -12,6 +11,7 @@ if TYPE_CHECKING:
 
     from roslet.engine.ros1.engine import Engine
     from roslet.io.select import Reactor
+    from roslet.node.future import Future
 
 # Seconds for one question to the master or to another node.
 CALL_TIMEOUT = 10.0
@@ -32,6 +32,9 @@ class MasterApi:
         raise NotImplementedError
 
     def _check_open(self) -> None:
+        raise NotImplementedError
+
+    def _future(self, what: str) -> Future[Any]:
         raise NotImplementedError
 
     def _update(self) -> None:
@@ -76,9 +79,10 @@ class MasterApi:
 
     def on_parameter(self, name: str, callback: Callable[[Any], object]) -> Any:
         """Call `callback(value)` inside spin whenever the parameter changes; returns its present value, {} where unset."""
+        self._check_open()
         full = self.resolve(name)
         self._parameter_callbacks.setdefault(full, []).append(callback)
-        future: Future[Any] = Future(self.reactor, f"parameter {full}")
+        future = self._future(f"parameter {full}")
         with self.reactor.lock:
             self._engine.watch_parameter(full, into(future), self.reactor.now())
             self._update()
@@ -93,7 +97,7 @@ class MasterApi:
     def call_master_async(self, method: str, *arguments: Any) -> Future[Any]:
         """`call_master` without waiting: a Future of the value."""
         self._check_open()
-        future: Future[Any] = Future(self.reactor, f"{method} of the master at {self._engine.master_uri}")
+        future = self._future(f"{method} of the master at {self._engine.master_uri}")
         with self.reactor.lock:
             self._engine.call_master(method, [self.name, *arguments], into(future), self.reactor.now())
             self._update()
@@ -101,7 +105,8 @@ class MasterApi:
 
     def call_node(self, uri: str, method: str, *arguments: Any, timeout: float = CALL_TIMEOUT) -> Any:
         """Call the slave API of the node at `uri`; this node's name is put first."""
-        future: Future[Any] = Future(self.reactor, f"{method} of {uri}")
+        self._check_open()
+        future = self._future(f"{method} of {uri}")
         with self.reactor.lock:
             self._engine.call_slave(uri, method, [self.name, *arguments], into(future), self.reactor.now())
             self._update()

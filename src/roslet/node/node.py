@@ -111,6 +111,7 @@ class Node(MasterApi):
         self._closing = threading.Lock()
         self._close_begun = False
         self._callbacks_waiting = 0
+        self._futures: weakref.WeakSet[Future[Any]] = weakref.WeakSet()  # those that somebody may wait for
         self._unset = {key: parse_value(text) for key, text in given.parameters.items()}
         self._engine = Engine(self.name, master_uri, host, os.getpid())
         self._engine.on_note = self._note
@@ -367,6 +368,13 @@ class Node(MasterApi):
         self._say_goodbye()
         self.clock.close()
         self._shell.close()
+        # Whoever publishes is told; whoever waits for a message goes on.
+        for publisher in list(self._publishers.values()):
+            publisher.close()
+        for subscription in list(self._subscriptions):
+            subscription.close()
+        for future in list(self._futures):
+            future.set_exception(NodeClosed(f"{self.name} is closed"))
         self.reactor.wake()
 
     def _say_goodbye(self) -> None:
@@ -409,6 +417,12 @@ class Node(MasterApi):
     def _check_open(self) -> None:
         if self.is_shutdown:
             raise NodeClosed(f"{self.name} is closed")
+
+    def _future(self, what: str) -> Future[Any]:
+        """The answer to something that is asked now; closing the node ends the wait for it."""
+        future: Future[Any] = Future(self.reactor, what)
+        self._futures.add(future)
+        return future
 
     def _settle(self) -> None:
         """Wait a moment for the master, so that what was just made is known when the call returns."""

@@ -112,6 +112,7 @@ class Client:
         """The same without waiting: a Future of the response, which can be awaited."""
         if self._closed:
             raise NodeClosed(f"the client of {self.name} is closed")
+        self.node._check_open()
         kind = self.type.Request
         if request is None:
             request = kind(**fields)
@@ -120,7 +121,7 @@ class Client:
         elif not isinstance(request, kind):
             raise TypeError(f"{self.name} takes {kind.__name__}, not {type(request).__name__}")
         body = bytes(request.serialize())
-        future: Future[Any] = Future(self.node.reactor, f"service {self.name}")
+        future = self.node._future(f"service {self.name}")
         with self.node.reactor.lock:
             link = self._link
             if link is not None and not link.closing:

@@ -80,6 +80,7 @@ class Publisher:
         self._buffer = bytearray(FIRST_BUFFER)
         self._view = memoryview(self._buffer)
         self._has_header = bool(getattr(message_type, "_has_header", False))
+        self._dropped = 0  # of a closed publisher
         self._latched: bytes | None = None
         self._latch = qos.durability == "transient_local"
         self._wait = qos.history == "keep_all"
@@ -100,7 +101,11 @@ class Publisher:
         """Since the publisher was made: `messages` published, `dropped` (messages for slow or lost subscribers, one count
         for each subscriber); now: `subscribers`."""
         entry = self._entry
-        dropped = 0 if entry is None else entry.dropped + sum(link.queue.dropped for link in entry.links)
+        dropped = (
+            self._dropped
+            if entry is None
+            else entry.dropped + sum(link.queue.dropped for link in entry.links)
+        )
         return {"messages": self.messages, "dropped": dropped, "subscribers": self.subscriber_count}
 
     def publish(self, message: Any = None, /, **fields: Any) -> None:
@@ -345,6 +350,7 @@ class Publisher:
 
     def close(self) -> None:
         """Unregister and disconnect every subscriber. Closing twice is allowed."""
+        self._dropped = self.statistics["dropped"]
         entry, self._entry = self._entry, None
         if entry is not None:
             self.node._unadvertise(self, entry)
