@@ -1,0 +1,98 @@
+"""A network namespace for one test: loopback with multicast and nothing else, so that no test meets another's peers."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import signal
+import subprocess
+import time
+from types import TracebackType
+
+import pytest
+
+_SETUP = "ip link set lo up multicast on && ip route add 239.0.0.0/8 dev lo && echo up && exec sleep 600"
+
+
+class Program:
+    """A command in the namespace; its standard output goes to a file, so that it never blocks."""
+
+    def __init__(
+        self, command: list[str], environment: dict[str, str], folder: pathlib.Path, name: str
+    ) -> None:
+        self.name = name
+        self.output = folder / f"{name}.out"
+        self.errors = folder / f"{name}.err"
+        with self.output.open("wb") as out, self.errors.open("wb") as err:
+            self.process = subprocess.Popen(command, stdout=out, stderr=err, env=environment)
+
+    def lines(self) -> list[str]:
+        return self.output.read_text().splitlines()
+
+    def wait_for(self, line: str, seconds: float = 30.0) -> None:
+        """Until the line has been printed."""
+        self.wait_until(lambda lines: line in lines, seconds, line)
+
+    def wait_until(self, seen: object, seconds: float, what: str) -> None:
+        assert callable(seen)
+        end = time.monotonic() + seconds
+        while not seen(self.lines()):
+            if time.monotonic() > end or self.process.poll() not in (None, 0):
+                raise AssertionError(
+                    f"{self.name} did not print {what!r}: {self.lines()}\n{self.errors.read_text()}"
+                )
+            time.sleep(0.02)
+
+    def finish(self, seconds: float = 40.0) -> list[str]:
+        """Its lines, when it has ended by itself."""
+        assert self.process.wait(seconds) == 0, self.errors.read_text()
+        return self.lines()
+
+
+class Namespace:
+    """Use as a context manager: `start` runs programs in it, all of which end with it."""
+
+    def __init__(self, folder: pathlib.Path) -> None:
+        self.folder = folder
+        self.programs: list[Program] = []
+
+    def __enter__(self) -> Namespace:
+        unshare = (
+            ["unshare", "--net"] if os.geteuid() == 0 else ["unshare", "--user", "--map-root-user", "--net"]
+        )
+        self._holder = subprocess.Popen(
+            [*unshare, "sh", "-c", _SETUP], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        assert self._holder.stdout is not None
+        if self._holder.stdout.readline() != "up\n":
+            reason = self._holder.communicate(timeout=5)[1]
+            if os.environ.get("CI"):
+                pytest.fail(f"no network namespace: {reason}", pytrace=False)
+            pytest.skip(f"no network namespace: {reason}")
+        return self
+
+    def start(self, *command: str, name: str = "", **environment: str) -> Program:
+        enter = ["nsenter", "--net", "--target", str(self._holder.pid)]
+        if os.geteuid() != 0:
+            enter += ["--user", "--preserve-credentials"]
+        values = {key: value for key, value in os.environ.items() if not key.startswith("ROS_")}
+        values.update(FASTDDS_BUILTIN_TRANSPORTS="UDPv4", ROS_DOMAIN_ID="0", **environment)
+        name = name or f"program{len(self.programs)}"
+        program = Program([*enter, *command], values, self.folder, name)
+        self.programs.append(program)
+        return program
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for program in self.programs:
+            if program.process.poll() is None:
+                program.process.send_signal(signal.SIGTERM)
+        for program in self.programs:
+            try:
+                program.process.wait(5)
+            except subprocess.TimeoutExpired:
+                program.process.kill()
+                program.process.wait(5)
+        self._holder.kill()
+        self._holder.communicate(timeout=5)
