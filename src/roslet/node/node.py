@@ -367,14 +367,14 @@ class Node(MasterApi):
         _open_nodes.discard(self)
         self._say_goodbye()
         self.clock.close()
+        for future in list(self._futures):
+            future.set_exception(NodeClosed(f"{self.name} is closed"))
         self._shell.close()
         # Whoever publishes is told; whoever waits for a message goes on.
         for publisher in list(self._publishers.values()):
             publisher.close()
         for subscription in list(self._subscriptions):
             subscription.close()
-        for future in list(self._futures):
-            future.set_exception(NodeClosed(f"{self.name} is closed"))
         self.reactor.wake()
 
     def _say_goodbye(self) -> None:
