@@ -113,13 +113,13 @@ class Raw:
         self.close()
 
 
-def string_subscriber(node: roslet.Node, topic: str, **other: str) -> Raw:
+def string_subscriber(node: roslet.Node, name: str, **other: str) -> Raw:
     """A raw subscriber of a std_msgs/String topic of `node`, its header exchanged."""
     raw = Raw(ports(node)[1])
     fields = {
         "callerid": "/raw",
         "md5sum": "992ce8a1687cec8c8bd883ec73ca41d1",
-        "topic": topic,
+        "topic": name,
         "type": "std_msgs/String",
         "message_definition": "string data\n",
     }

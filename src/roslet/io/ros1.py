@@ -8,7 +8,7 @@ import socket
 from roslet.engine.ros1.links import IncomingLink, PublisherLink, ServiceClientLink
 from roslet.engine.ros1.rpc import RpcClient, RpcServer
 from roslet.io.select import EXHAUSTED, READ, Timer, listen, tune
-from roslet.io.streams import BUSY, Stream, connect, lose_machine
+from roslet.io.streams import BUSY, UNREAD, Stream, connect, lose_machine
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -114,6 +114,10 @@ class Ros1Shell:
             self._accepted["rpc"] -= 1
             for reason in server.take_refused():
                 self.engine.count(reason)
+            if server.unfinished:
+                self.engine.count("request-truncated")
+            if stream.end == UNREAD:
+                self.engine.count(UNREAD)
         else:
             self.streams[stream] = "rpc"  # the latest used at the end
             self.engine.rpc_pump(server, self.reactor.now(), host)

@@ -27,6 +27,8 @@ LAST_WORDS = 2.0
 BUSY = 0.001
 # Host names that may be looked up at a time, each in a thread of its own; more wait.
 MAX_LOOKUPS = 8
+# Why a connection ends whose peer does not read what it asked for.
+UNREAD = "unread-answers"
 _BUSY = (errno.EAGAIN, errno.EWOULDBLOCK, errno.EINTR)
 
 
@@ -58,6 +60,7 @@ class Stream:
         self.broken = False  # whether sending has failed; the loop closes it in a moment
         self.user = False
         self.description = ""
+        self.end = ""  # why it was closed
         self._rest: bytes | memoryview = b""
         self._timer: Timer | None = None
         self._last_words: Timer | None = None
@@ -254,7 +257,7 @@ class Stream:
                 return
             self._rest = memoryview(self._rest)[sent:] if sent < len(self._rest) else b""
             if self._rest and len(self._rest) > getattr(self.machine, "max_unsent", len(self._rest)):
-                self.lose("unread-answers")
+                self.lose(UNREAD)
                 return
         queue = getattr(self.machine, "queue", None)
         if queue is None:
@@ -365,6 +368,7 @@ class Stream:
         """Close the socket and tell the machine."""
         if self.closed:
             return
+        self.end = reason
         self.close()
         lose_machine(self.machine, reason, self.reactor.now())
         self.after(self)

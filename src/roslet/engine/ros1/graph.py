@@ -85,9 +85,9 @@ class Publication:
     def opened(self, link: "PublisherLink | UdpSender") -> None:
         """The link can carry messages from now on. Called with `lock` held, where there is one."""
         if isinstance(link, PublisherLink):
-            self.links = self.links + (link,)
+            self.links = self.links + (link,)  # noqa: RUF005 - MicroPython has no (*a, b)
         else:
-            self.senders = self.senders + (link,)
+            self.senders = self.senders + (link,)  # noqa: RUF005
         if self.on_link is not None:
             self.on_link(link, True)
 

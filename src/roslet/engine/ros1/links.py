@@ -260,6 +260,8 @@ class SubscriberLink(FrameLink):
         super().fault(error, now)
 
     def lost(self, reason: str, now: float) -> None:
+        if self.state == HANDSHAKE and not self.closing:
+            self.engine.count("closed-before-header")
         super().lost(reason, now)
         self.subscription.link_lost(self, now)
 

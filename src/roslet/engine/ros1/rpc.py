@@ -168,6 +168,11 @@ class RpcServer:
         """Answer a call with a fault. An answer to a call that is no longer open is dropped."""
         self._answer(call_id, xmlrpc.emit_fault(code, message), now)
 
+    @property
+    def unfinished(self) -> bool:
+        """Whether a request has come in part, and nothing was wrong with it so far."""
+        return not self.close_reason and not self._parser.idle
+
     def take_refused(self) -> "list[str]":
         """Why requests that have come since the last look were refused, one reason each."""
         refused = self._refused
