@@ -131,6 +131,7 @@ class FrameReceiver:
             room = self.writable()
             count = min(len(room), len(data) - at)
             room[:count] = data[at : at + count]
+            del room  # a view of ours must not look like one that a message holds
             at += count
             self.received(count)
 
