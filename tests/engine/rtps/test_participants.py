@@ -306,3 +306,43 @@ def test_random_datagrams_raise_nothing_and_are_counted() -> None:
             )
     assert sum(victim.participant.counters.values()) > 50
     assert one.participant.guid_prefix in victim.participant.spdp.remotes
+
+
+def leased(kind: int, seconds: float) -> "Any":
+    return RELIABLE.replace(liveliness=(kind, int(seconds * 1000000000)))
+
+
+def test_an_automatic_writer_lives_as_long_as_its_participant() -> None:
+    network = Network()
+    _, other, writer, reader = pair(network, leased(qos.AUTOMATIC, 0.5), leased(qos.AUTOMATIC, 1.0))
+    assert matched(network, writer, reader)
+    network.run(10)
+    assert other.of(events.LivelinessLost) == []
+    network.apart.add(other.address)
+    network.run(2)
+    assert len(other.of(events.LivelinessLost)) == 1
+    network.apart.clear()
+    network.run(2)
+    assert len(other.of(events.LivelinessRegained)) == 1
+    assert len(other.of(events.LivelinessLost)) == 1
+
+
+def test_a_manual_writer_must_say_that_it_lives() -> None:
+    for kind in (qos.MANUAL_BY_PARTICIPANT, qos.MANUAL_BY_TOPIC):
+        network = Network()
+        one, other, writer, reader = pair(network, leased(kind, 1.0), leased(kind, 1.0))
+        assert matched(network, writer, reader)
+        for number in range(4):
+            network.run(0.7)
+            if number == 1:
+                writer.write(body(1), network.now)
+            elif kind == qos.MANUAL_BY_TOPIC:
+                writer.assert_liveliness()
+            else:
+                one.participant.assert_liveliness(network.now)
+        assert other.of(events.LivelinessLost) == []
+        network.run(1.5)
+        assert len(other.of(events.LivelinessLost)) == 1
+        writer.write(body(2), network.now)
+        network.run(0.1)
+        assert len(other.of(events.LivelinessRegained)) == 1

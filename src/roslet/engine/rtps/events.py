@@ -132,3 +132,14 @@ class LivelinessLost(Record):
     def __init__(self, local: bytes, writer: bytes) -> None:
         self.local = local
         self.writer = writer
+
+
+class LivelinessRegained(Record):
+    """A writer whose liveliness was lost has been heard again."""
+
+    _fields = ("local", "writer")
+    __slots__ = _fields
+
+    def __init__(self, local: bytes, writer: bytes) -> None:
+        self.local = local
+        self.writer = writer

@@ -7,6 +7,7 @@ itself.
 from roslet.engine.rtps import events
 from roslet.engine.rtps.fragments import Budget
 from roslet.engine.rtps.limits import Limits
+from roslet.engine.rtps.liveliness import Liveliness
 from roslet.engine.rtps.outbox import Outbox
 from roslet.engine.rtps.qos import incompatible
 from roslet.engine.rtps.reader import Reader
@@ -131,6 +132,7 @@ class Participant:
             epoch,
             self._builtin_sample,
         )
+        self._liveliness = Liveliness(self._deliver, self._heard)
         self._all_writers: dict[bytes, Writer] = dict(self.sedp.writers)
         self._now = 0.0
         self._source = GUIDPREFIX_UNKNOWN
@@ -198,7 +200,7 @@ class Participant:
     def deadline(self) -> "float | None":
         """When `handle_deadline` or `datagrams_to_send` next has something to do, or None."""
         found = self.outbox.deadline()
-        times = [self.spdp.deadline(), self._assert_at]
+        times = [self.spdp.deadline(), self._assert_at, self._liveliness.deadline()]
         times += [one.deadline() for one in self._all_writers.values()]
         times += [one.deadline() for one in self.sedp.readers.values()]
         times += [one.deadline() for one in self.readers.values()]
@@ -217,6 +219,7 @@ class Participant:
             reader.handle_deadline(now)
         for reader in self.readers.values():
             reader.handle_deadline(now)
+        self._liveliness.handle_deadline(now)
         if self._assert_at is not None and now >= self._assert_at:
             self._send_liveliness(KIND_AUTOMATIC_LIVELINESS_UPDATE, now)
             self._assert_at = now + self._liveliness_period()
@@ -270,6 +273,7 @@ class Participant:
         if self.readers.pop(reader.entity_id, None) is not None:
             for remote in list(reader.proxies):
                 self._unroute(reader, remote)
+                self._liveliness.forget(reader.entity_id, remote)
                 reader.unmatch(remote)
             self.sedp.withdraw(reader.data, now)
 
@@ -320,7 +324,8 @@ class Participant:
         if not isinstance(event, events.SampleReceived):
             return
         if event.local == guid.ENTITYID_P2P_BUILTIN_PARTICIPANT_MESSAGE_READER:
-            return  # it came from a known participant, whose lease it has renewed
+            self._liveliness_message(event)
+            return
         prefix = event.writer[:12]
         try:
             if event.flags & FLAG_D:
@@ -333,6 +338,20 @@ class Participant:
                 self._endpoint_lost(self._key_of(event, prefix))
         except ProtocolError as error:
             self._count(error.reason)
+
+    def _liveliness_message(self, event: "SampleReceived") -> None:
+        """An automatic one has done its work by coming: it renewed the participant's lease."""
+        try:
+            said = participant_message.parse(event.payload)
+        except ProtocolError as error:
+            self._count(error.reason)
+            return
+        if said.guid_prefix == event.writer[:12] and said.kind == KIND_MANUAL_LIVELINESS_UPDATE:
+            self._liveliness.participant_asserted(said.guid_prefix, self._now)
+
+    def _heard(self, prefix: bytes) -> float:
+        remote = self.spdp.remotes.get(prefix)
+        return remote.heard if remote is not None else 0.0
 
     def _key_of(self, event: "SampleReceived", prefix: bytes) -> bytes:
         key = inline_qos.parse(event.inline_qos, event.little).key_hash
@@ -403,10 +422,12 @@ class Participant:
             self._deliver(events.QosIncompatible(reader.entity_id, found, policies))
         elif reader.match(found, self._addresses(found), now):
             self._route(reader, found.guid)
+            self._liveliness.watch(reader.entity_id, found, now)
             self._deliver(events.EndpointMatched(reader.entity_id, found))
 
     def _drop_writer(self, reader: Reader, found: EndpointData) -> None:
         self._unroute(reader, found.guid)
+        self._liveliness.forget(reader.entity_id, found.guid)
         if reader.unmatch(found.guid) is not None:
             self._deliver(events.EndpointUnmatched(reader.entity_id, found))
 
@@ -428,6 +449,8 @@ class Participant:
         value = data.parse(view, at, end, flags)
         routes = self._by_writer.get(self._source + value.writer_id)
         if routes is not None:
+            if self._liveliness.manual:
+                self._liveliness.writer_asserted(self._source + value.writer_id, self._now)
             reader_id = value.reader_id
             for reader, proxy in routes:
                 if reader_id == ENTITYID_UNKNOWN or reader_id == reader.entity_id:
@@ -451,6 +474,8 @@ class Participant:
 
     def _heartbeat(self, view: memoryview, at: int, end: int, flags: int) -> None:
         value = heartbeat.parse(view, at, end, flags)
+        if value.liveliness:
+            self._liveliness.writer_asserted(self._source + value.writer_id, self._now)
         for reader, proxy in self._targets(value):
             reader.handle_heartbeat(proxy, value, self._now)
 

@@ -167,6 +167,12 @@ class Writer:
         """Whether every matched reliable reader has all samples up to `sequence`."""
         return not [one for one in self.proxies.values() if one.reliable and one.acked < sequence]
 
+    def assert_liveliness(self) -> None:
+        """Say that this MANUAL_BY_TOPIC writer is alive, without a sample. Reliable writers only: it is a heartbeat."""
+        beat = self._heartbeat(ENTITYID_UNKNOWN, True)
+        beat.liveliness = True
+        self._outbox.send((self._header, beat.emit()), self._addresses)
+
     # -- matching
 
     def match(self, remote: "EndpointData", addresses: "tuple[Address, ...]", now: float) -> bool:

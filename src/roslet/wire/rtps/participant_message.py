@@ -35,7 +35,7 @@ class ParticipantMessage(Record):
         return (b"\0\1\0\0" if little else b"\0\0\0\0") + bytes(body) + self.data
 
 
-def parse(payload: "bytes | memoryview") -> ParticipantMessage:
+def parse(payload: "bytes | bytearray | memoryview") -> ParticipantMessage:
     """The value of a serialised payload.
 
     Raises ProtocolError: participant-message-truncated, participant-message-invalid.
