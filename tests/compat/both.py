@@ -32,10 +32,13 @@ class Both:
         environment["PYTHONPATH"] = str(self.generated)
         return Program([str(peers.DEBIAN_PYTHON), str(PROGRAMS / program), *arguments], environment)
 
-    def under_roslet(self, program: str | pathlib.Path, *arguments: str) -> Program:
+    def under_roslet(
+        self, program: str | pathlib.Path, *arguments: str, libraries: pathlib.Path | None = None
+    ) -> Program:
+        """`libraries` is a folder of modules that come first."""
         environment = self.master.environment()
         environment["ROS_PACKAGE_PATH"] = f"{WORKSPACE}:/usr/share"
-        environment["PYTHONPATH"] = str(peers.ROOT / "src")
+        environment["PYTHONPATH"] = f"{libraries or self.generated / 'libraries'}:{peers.ROOT / 'src'}"
         command = [sys.executable, "-m", "roslet.cli.main", "run", str(PROGRAMS / program), *arguments]
         return Program(command, environment)
 

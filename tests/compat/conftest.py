@@ -8,9 +8,9 @@ from collections.abc import Iterator
 
 import pytest
 
-import peers  # noqa: E402
-from compat.both import WORKSPACE, Both  # noqa: E402
-from interop.ros1 import Master  # noqa: E402
+import peers
+from compat.both import WORKSPACE, Both
+from interop.ros1 import Master
 
 GENPY = pathlib.Path("/usr/lib/genpy")
 
@@ -39,6 +39,9 @@ def generated(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
         includes = [f"-Ibeginner_tutorials:{source / 'msg'}", "-Istd_msgs:/usr/share/std_msgs/msg"]
         subprocess.run([*program, *map(str, files), *includes, *where], check=True, timeout=60)
         subprocess.run([*program, "--initpy", *where], check=True, timeout=60)
+    # Of Debian's ROS, roslet gets this one library, which is plain Python, and nothing else.
+    (folder / "libraries").mkdir()
+    (folder / "libraries/actionlib").symlink_to("/usr/lib/python3/dist-packages/actionlib")
     return folder
 
 

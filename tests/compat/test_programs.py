@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pathlib
+
 import pytest
 
 from compat.both import PROGRAMS, Both, outcome
@@ -29,6 +31,7 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
     "any message": (("generic.py",),),
     "services": (("services.py",),),
     "subscriber listeners": (("listeners.py",),),
+    "actions": (("actions.py",),),
     "simulated time": (("simulated_time.py",),),
     **{
         f"ended by {how}": (("endings.py", how),)
@@ -57,6 +60,14 @@ def test_a_program_says_the_same_under_both(both: Both, scene: str) -> None:
         _expected[scene] = outcome(judges)
     assert outcome(ours) == _expected[scene]
     assert any(lines or errors for _, lines, errors in _expected[scene])
+
+
+def test_without_numpy_messages_say_the_same(both: Both, tmp_path: pathlib.Path) -> None:
+    """Arrays arrive as tuples all the same."""
+    (tmp_path / "numpy.py").write_text("raise ImportError('no numpy here')\n", encoding="utf-8")
+    judge = [both.under_rospy("messages.py")]
+    ours = [both.under_roslet("messages.py", libraries=tmp_path)]
+    assert outcome(ours) == outcome(judge)
 
 
 def test_every_program_is_run() -> None:

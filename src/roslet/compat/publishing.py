@@ -24,6 +24,14 @@ UNBOUNDED = 1_000_000
 topics: dict[str, PublishedTopic] = {}
 
 
+class Connection:
+    """Who is at the other end: `endpoint_id`, which `callerid_pub` is too, is its node's name."""
+
+    def __init__(self, callerid: str) -> None:
+        self.endpoint_id = callerid
+        self.callerid_pub = callerid
+
+
 class PublishedTopic:
     """The publishers of one topic in this program."""
 
@@ -77,9 +85,31 @@ class PublishedTopic:
         if session.node is not None and handle is not session.node.log._publisher:
             handle.close()
 
-    @property
-    def connections(self) -> int:
+    # Programs, actionlib's for example, ask these of rospy's own object in this place.
+
+    def get_num_connections(self) -> int:
+        """How many subscribers are connected."""
         return 0 if self.handle is None else self.handle.subscriber_count + self._sets_own_clock
+
+    def has_connections(self) -> bool:
+        """Whether any is."""
+        return self.get_num_connections() > 0
+
+    def has_connection(self, endpoint_id: str) -> bool:
+        """Whether the node of this name is."""
+        return any(connection.endpoint_id == endpoint_id for connection in self.connections)
+
+    @property
+    def connections(self) -> list[Connection]:
+        """The subscribers."""
+        handle = self.handle
+        if handle is None:
+            return []
+        links = () if handle._entry is None else handle._entry.links
+        return [
+            *(Connection(link.callerid) for link in links),
+            *(Connection(session.name) for _ in handle._local),
+        ]
 
     @property
     def _sets_own_clock(self) -> bool:
@@ -144,14 +174,14 @@ class PublishedTopic:
                 if opened:
                     listener.peer_subscribe(self.name, self.publish, lambda m: self.publish_to(link, m))
                 else:
-                    listener.peer_unsubscribe(self.name, self.connections if left is None else left)
+                    listener.peer_unsubscribe(self.name, self.get_num_connections() if left is None else left)
             except Exception as error:
                 core.logwarn("the subscriber listener of %s failed: %s" % (self.name, error))
 
     def publish(self, message: Any) -> None:
         """Send to all. Raises ROSSerializationException."""
         handle = self.handle
-        if handle is None or (not self.latch and not self.connections):
+        if handle is None or (not self.latch and not self.has_connections()):
             return
         if handle._has_header and message.header.frame_id is None:
             message.header.frame_id = "0"
@@ -188,4 +218,4 @@ class PublishedTopic:
             handle._queue(link, pack("<I", len(body)) + body)
 
 
-__all__ = ["PublishedTopic", "topics"]
+__all__ = ["Connection", "PublishedTopic", "topics"]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from roslet.compat.callbacks import UNBOUNDED, Worker
 from roslet.compat.messages import simplify
+from roslet.compat.publishing import Connection
 from roslet.compat.rospy import core
 from roslet.compat.rospy.msg import AnyMsg
 from roslet.compat.session import session
@@ -62,9 +63,33 @@ class SubscribedTopic:
             self.handle.close()
         self.worker.close()
 
-    @property
-    def connections(self) -> int:
+    # Programs, actionlib's for example, ask these of rospy's own object in this place.
+
+    def get_num_connections(self) -> int:
+        """How many publishers are connected."""
         return 0 if self.handle is None else self.handle.publisher_count
+
+    def has_connections(self) -> bool:
+        """Whether any is."""
+        return self.get_num_connections() > 0
+
+    def has_connection(self, endpoint_id: str) -> bool:
+        """Whether the node of this name is."""
+        return any(connection.endpoint_id == endpoint_id for connection in self.connections)
+
+    @property
+    def connections(self) -> list[Connection]:
+        """The publishers."""
+        handle = self.handle
+        if handle is None:
+            return []
+        links = () if handle._entry is None else handle._entry.links.values()
+        found = [
+            Connection(link.peer_header["callerid"])
+            for link in links
+            if "callerid" in getattr(link, "peer_header", {})
+        ]
+        return found if handle._publisher is None else [*found, Connection(session.name)]
 
     def _attach(self, node: Node) -> None:
         if not self.users or session.shutting_down.is_set():

@@ -48,7 +48,7 @@ class Topic:
 
     def get_num_connections(self) -> int:
         """How many subscribers, or publishers, are connected."""
-        return 0 if self.impl is None else self.impl.connections
+        return 0 if self.impl is None else self.impl.get_num_connections()
 
 
 class SubscribeListener:
