@@ -31,6 +31,8 @@ else:  # pragma: no cover - other systems than Linux
     READ, WRITE, GONE = select.POLLIN, select.POLLOUT, select.POLLERR | select.POLLHUP
     _SCALE = 1000.0  # poll takes milliseconds
 
+# Bytes taken from a control connection in one go.
+ROOM = 64 << 10
 # The longest sleep of an idle loop: bounds the harm of a wake-up that got lost. Seconds.
 MAX_SLEEP = 60.0
 # Seconds to look for input before sleeping, where the last sleep was shorter than BRISK: two programs that answer each
@@ -102,6 +104,8 @@ class Reactor:
 
     def __init__(self) -> None:
         self.lock = threading.RLock()
+        # What control connections receive into, one after the other: a machine takes what it wants of it at once.
+        self.room = bytearray(ROOM)
         self._control = _poller()
         self._all = _poller()
         self._handlers: dict[int, tuple[Handler, bool]] = {}

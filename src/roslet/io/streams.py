@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from roslet.io.select import Reactor
 
-# Bytes taken from a control connection in one go.
-ROOM = 64 << 10
 # Seconds that a peer has to read what is left once a machine wants to close.
 LAST_WORDS = 2.0
 # Seconds until a queue, or a socket to be closed, that a publishing thread is busy with is looked at again.
@@ -70,8 +68,6 @@ class Stream:
         self._events = WRITE if connecting else READ
         machine.channel = self
         self._into = hasattr(machine, "writable")
-        if not self._into:
-            self._room = bytearray(ROOM)
         reactor.register(self._fd, self._ready, self._events)
         if not connecting:
             self._describe()
@@ -135,7 +131,7 @@ class Stream:
     def _read(self) -> None:
         machine = self.machine
         try:
-            count = self.sock.recv_into(machine.writable() if self._into else self._room)
+            count = self.sock.recv_into(machine.writable() if self._into else self.reactor.room)
         except OSError as error:
             if error.errno not in _BUSY:
                 self.lose(error.strerror or str(error))
@@ -147,7 +143,7 @@ class Stream:
         if self._into:
             machine.received(count, now)
         else:
-            machine.receive_data(memoryview(self._room)[:count], now)
+            machine.receive_data(memoryview(self.reactor.room)[:count], now)
         self.after(self)
         if not self.closed:
             self.flush()

@@ -51,8 +51,8 @@ class FrameReceiver:
         self.maximum = maximum
         self._head = 4 + prefix
         self._prefix = prefix
-        self._chunk = bytearray(chunk)
-        self._chunk_view = memoryview(self._chunk)
+        self._chunk_size = chunk
+        self._chunk_view = memoryview(b"")  # made when the first bytes come: many a link never receives a frame
         self._start = 0
         self._end = 0
         self._large: bytearray | None = None  # the buffer of the large frame being received
@@ -81,6 +81,8 @@ class FrameReceiver:
         """Room for the next bytes, at least one."""
         large = self._large
         if large is None:
+            if not self._chunk_view:
+                self._chunk_view = memoryview(bytearray(self._chunk_size))
             return self._chunk_view[self._end :]
         if self._large_end == len(large):
             grown = bytearray(min(self._large_size, 2 * len(large)))
