@@ -52,13 +52,29 @@ class Formatter(argparse.RawDescriptionHelpFormatter):
             self._action_max_length += 2
 
 
+class Parser(argparse.ArgumentParser):
+    """The parser of one command: options may stand before, between and behind the other arguments."""
+
+    _within = False
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As ArgumentParser's, which takes what follows an option for superfluous where a list of values may be empty."""
+        if self._within:
+            return super().parse_known_args(args, namespace)
+        self._within = True
+        try:
+            return self.parse_known_intermixed_args(args, namespace)
+        finally:
+            self._within = False
+
+
 class Group:
     """One group of commands under construction: `roslet GROUP COMMAND`."""
 
     def __init__(self, parser: argparse.ArgumentParser) -> None:
         self._parser = parser
         self._commands = parser.add_subparsers(
-            title="commands", metavar="COMMAND", dest="command", required=True
+            title="commands", metavar="COMMAND", dest="command", required=True, parser_class=Parser
         )
 
     def command(
