@@ -346,3 +346,34 @@ def test_a_manual_writer_must_say_that_it_lives() -> None:
         writer.write(body(2), network.now)
         network.run(0.1)
         assert len(other.of(events.LivelinessRegained)) == 1
+
+
+def test_an_expired_sample_is_not_sent_to_a_late_reader() -> None:
+    network = Network()
+    one = network.host()
+    writer = one.participant.create_writer("t", "T", LATCHED.replace(lifespan=1000000000), network.now)
+    writer.write(body(0), network.now)
+    network.run(0.7)
+    writer.write(body(1), network.now)
+    network.run(0.7)
+    other = network.host()
+    reader = other.participant.create_reader("t", "T", LATCHED, network.now)
+    assert matched(network, writer, reader)
+    network.run(1)
+    assert numbers(other) == [1]
+    assert writer.acknowledged(2)
+
+
+def test_a_missed_deadline_is_told_at_both_ends_each_period() -> None:
+    network = Network()
+    policies = RELIABLE.replace(deadline=500000000)
+    one, other, writer, reader = pair(network, policies, policies)
+    assert matched(network, writer, reader)
+    network.run(2)
+    for number in range(5):
+        writer.write(body(number), network.now)
+        network.run(0.3)
+    assert one.of(events.DeadlineMissed) == other.of(events.DeadlineMissed) == []
+    network.run(1.3)
+    assert one.of(events.DeadlineMissed) == [events.DeadlineMissed(writer.entity_id)] * 3
+    assert other.of(events.DeadlineMissed) == [events.DeadlineMissed(reader.entity_id)] * 3

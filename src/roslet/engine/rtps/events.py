@@ -143,3 +143,16 @@ class LivelinessRegained(Record):
     def __init__(self, local: bytes, writer: bytes) -> None:
         self.local = local
         self.writer = writer
+
+
+class DeadlineMissed(Record):
+    """Our endpoint `local` did not write, or did not get, a sample within the period of its DEADLINE.
+
+    Told anew each period, from the first sample on. For topics without a key.
+    """
+
+    _fields = ("local",)
+    __slots__ = _fields
+
+    def __init__(self, local: bytes) -> None:
+        self.local = local

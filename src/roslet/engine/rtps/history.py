@@ -21,7 +21,7 @@ class HistoryFull(RosletError):
 class Change:
     """One sample, or the end of an instance: `flags` as in DATA; `key` tells instances apart."""
 
-    __slots__ = ("flags", "inline_qos", "key", "payload", "sequence", "time")
+    __slots__ = ("expires", "flags", "inline_qos", "key", "payload", "sequence", "time")
 
     def __init__(
         self, sequence: int, payload: bytes, inline_qos: bytes, flags: int, time: int, key: bytes
@@ -32,6 +32,7 @@ class Change:
         self.flags = flags
         self.time = time
         self.key = key
+        self.expires = 0.0  # when LIFESPAN ends it, where the writer has one
 
 
 class History:
@@ -97,6 +98,14 @@ class History:
         while self._changes:
             first = self.first(0)
             if first > sequence:
+                break
+            self.remove(first)
+
+    def forget_expired(self, now: float) -> None:
+        """Forget the oldest changes whose time is over."""
+        while self._changes:
+            first = self.first(0)
+            if self._changes[first].expires > now:
                 break
             self.remove(first)
 

@@ -237,7 +237,15 @@ class Participant:
     ) -> Writer:
         """A writer of a topic, by its names in DDS, announced from now on."""
         endpoint = self._endpoint(topic, type_name, qos, b"\x02" if keyed else b"\x03")
-        writer = Writer(endpoint, self._header, self.outbox, self.counters, self._epoch, self._fragment_size)
+        writer = Writer(
+            endpoint,
+            self._header,
+            self.outbox,
+            self.counters,
+            self._deliver,
+            self._epoch,
+            self._fragment_size,
+        )
         self.writers[writer.entity_id] = self._all_writers[writer.entity_id] = writer
         self.sedp.announce(endpoint, now)
         for remote in list(self.endpoints.values()):

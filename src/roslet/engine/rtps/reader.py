@@ -4,13 +4,14 @@ Of a reliable writer every sample is delivered once and in order, or reported lo
 best-effort one what comes, never backwards.
 """
 
-from roslet.engine.rtps.events import SampleReceived, SamplesLost
+from roslet.engine.rtps.events import DeadlineMissed, SampleReceived, SamplesLost
 from roslet.engine.rtps.fragments import Assembly
 from roslet.wire.rtps import info_dst, number_set
 from roslet.wire.rtps.ack_nack import AckNack
 from roslet.wire.rtps.data import FLAG_D, FLAG_K, Data
 from roslet.wire.rtps.data_frag import FLAG_K as FRAGMENT_OF_KEY
 from roslet.wire.rtps.nack_frag import NackFrag
+from roslet.wire.rtps.times import INFINITE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -104,6 +105,8 @@ class Reader:
         self._limits = limits
         self._budget = budget
         self._deliver = deliver
+        self._period = self.qos.deadline / 1e9 if self.qos.deadline < INFINITE else None
+        self._miss_at: float | None = None
 
     # -- matching
 
@@ -131,6 +134,8 @@ class Reader:
     def handle_data(self, proxy: WriterProxy, value: "Data", time: "int | None", now: float) -> None:
         """A DATA of a matched writer."""
         sequence = value.sequence
+        if self._period is not None:
+            self._miss_at = now + self._period
         if sequence == proxy.next and (proxy.synced or not proxy.reliable):
             # The ordinary case first.
             proxy.next = sequence + 1
@@ -308,7 +313,7 @@ class Reader:
 
     def deadline(self) -> "float | None":
         """When `handle_deadline` has something to do."""
-        found: float | None = None
+        found = self._miss_at
         for proxy in self.proxies.values():
             for at in (proxy.ack_at, proxy.hello_at):
                 if at is not None and (found is None or at < found):
@@ -316,7 +321,10 @@ class Reader:
         return found
 
     def handle_deadline(self, now: float) -> None:
-        """Send the acknowledgements and requests that are due."""
+        """Send the acknowledgements and requests that are due; notice a missed DEADLINE."""
+        if self._miss_at is not None and self._period is not None and now >= self._miss_at:
+            self._miss_at = now + self._period
+            self._deliver(DeadlineMissed(self.entity_id))
         for proxy in self.proxies.values():
             if proxy.ack_at is not None and now >= proxy.ack_at:
                 proxy.ack_at = None

@@ -79,7 +79,9 @@ class Sedp:
         deliver: "Callable[[Any], None]",
     ) -> None:
         self.writers = {
-            ours: Writer(EndpointData(prefix + ours, qos=BUILTIN_QOS), header, outbox, counters, epoch)
+            ours: Writer(
+                EndpointData(prefix + ours, qos=BUILTIN_QOS), header, outbox, counters, deliver, epoch
+            )
             for ours, _, _ in WRITERS
         }
         self.readers = {

@@ -4,6 +4,7 @@ One class for best effort and reliable: a best-effort reader is simply one that 
 belongs to the writer, so a sample goes once to each distinct address, to whichever readers are there.
 """
 
+from roslet.engine.rtps.events import DeadlineMissed
 from roslet.engine.rtps.history import Change, History
 from roslet.wire.rtps import gap, info_dst, number_set, times
 from roslet.wire.rtps.data import FLAG_D, FLAG_K, FLAG_Q, Preface
@@ -16,10 +17,12 @@ from roslet.wire.rtps.heartbeat_frag import HeartbeatFrag
 from roslet.wire.rtps.info_ts import InfoTimestamp
 from roslet.wire.rtps.qos import TRANSIENT_LOCAL
 from roslet.wire.rtps.submessage import FLAG_E
+from roslet.wire.rtps.times import INFINITE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
+    from typing import Any
 
     from roslet.engine.rtps.outbox import Address, Datagram, Outbox
     from roslet.wire.rtps.ack_nack import AckNack
@@ -77,6 +80,7 @@ class Writer:
         header: bytes,
         outbox: "Outbox",
         counters: "dict[str, int]",
+        deliver: "Callable[[Any], None]",
         epoch: int = 0,
         fragment_size: int = FRAGMENT_SIZE,
     ) -> None:
@@ -92,7 +96,11 @@ class Writer:
         self._header = header
         self._outbox = outbox
         self._counters = counters
+        self._deliver = deliver
         self._epoch = epoch
+        self._lifespan = self.qos.lifespan / 1e9 if self.qos.lifespan < INFINITE else None
+        self._period = self.qos.deadline / 1e9 if self.qos.deadline < INFINITE else None
+        self._miss_at: float | None = None
         self._paced = 0  # fragment runs that the outbox still holds
         self._preface = Preface(header, self.entity_id)
         self._addresses: tuple[Address, ...] = ()
@@ -124,12 +132,18 @@ class Writer:
         """
         if time is None:
             time = self._epoch + int(now * 1000000000)
+        if self._lifespan is not None:
+            self.history.forget_expired(now)
+        if self._period is not None:
+            self._miss_at = now + self._period
         sequence = self.last + 1
         kept = self.keeps or self._any_reliable
         large = len(payload) > self.fragment_size
         if kept or large:
             payload = bytes(payload)
             change = Change(sequence, payload, inline_qos, flags, time, key)
+            if self._lifespan is not None:
+                change.expires = now + self._lifespan
             if kept:
                 self.history.add(change)
         self.last = sequence
@@ -183,6 +197,8 @@ class Writer:
             known.data = remote
             self._refresh()
             return False
+        if self._lifespan is not None:
+            self.history.forget_expired(now)
         late = self.keeps and remote.qos.durability >= TRANSIENT_LOCAL
         proxy = ReaderProxy(remote, addresses, self.history.first(self.last + 1) if late else self.last + 1)
         proxy.reliable = proxy.reliable and self.reliable
@@ -238,10 +254,15 @@ class Writer:
 
     def deadline(self) -> "float | None":
         """When `handle_deadline` has something to do."""
-        return self._heartbeat_at
+        if self._miss_at is None:
+            return self._heartbeat_at
+        return self._miss_at if self._heartbeat_at is None else min(self._miss_at, self._heartbeat_at)
 
     def handle_deadline(self, now: float) -> None:
-        """Ask for acknowledgements, ever more rarely while none come."""
+        """Ask for acknowledgements, ever more rarely while none come; notice a missed DEADLINE."""
+        if self._miss_at is not None and self._period is not None and now >= self._miss_at:
+            self._miss_at = now + self._period
+            self._deliver(DeadlineMissed(self.entity_id))
         if self._heartbeat_at is None or now < self._heartbeat_at:
             return
         if self._paced:
@@ -275,6 +296,8 @@ class Writer:
             self._count("acknack-repeated")
             return
         proxy.count = value.count
+        if self._lifespan is not None:
+            self.history.forget_expired(now)
         acked = min(value.state.base - 1, self.last)
         if acked > proxy.acked:
             proxy.acked = acked
