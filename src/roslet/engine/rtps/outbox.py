@@ -8,9 +8,9 @@ if TYPE_CHECKING:
     Parts = tuple[bytes | bytearray | memoryview, ...]
     Datagram = tuple[Parts, tuple[Address, ...]]
 
-# Octets that one peer's default socket buffer (208 KiB on Linux, of which half is bookkeeping) takes at once.
-BURST = 96 * 1024
-# Seconds that a peer gets to empty it: 96 KiB in 0.4 ms are some 240 MB/s.
+# Octets that one peer's default socket buffer (208 KiB on Linux) takes at once.
+BURST = 192 * 1024
+# Seconds that a peer gets to empty it. Loops that sleep in whole milliseconds reach some 190 MB/s.
 INTERVAL = 0.0004
 
 
@@ -29,9 +29,12 @@ class Outbox:
         if addresses:
             self._urgent.append((parts, addresses))
 
-    def send_paced(self, datagrams: "Iterator[Datagram]") -> None:
-        """Queue many, made when their time comes."""
-        self._bulk.append(datagrams)
+    def send_paced(self, datagrams: "Iterator[Datagram]", first: bool = False) -> None:
+        """Queue many, made when their time comes; `first`: before those that wait already, for repairs."""
+        if first:
+            self._bulk.insert(0, datagrams)
+        else:
+            self._bulk.append(datagrams)
 
     def take(self, now: float) -> "list[Datagram]":
         """What is to be sent now."""
@@ -40,12 +43,11 @@ class Outbox:
         if self._bulk and now >= self._resume:
             left = self.burst
             while self._bulk and left > 0:
-                # In turns, so that a small sample does not wait for a large one before it.
-                source = self._bulk.pop(0)
-                datagram = next(source, None)
+                # One sample after the other: readers put only a few together at once.
+                datagram = next(self._bulk[0], None)
                 if datagram is None:
+                    self._bulk.pop(0)
                     continue
-                self._bulk.append(source)
                 found.append(datagram)
                 left -= sum([len(part) for part in datagram[0]]) * len(datagram[1])
             self._resume = now + self.interval

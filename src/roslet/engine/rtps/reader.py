@@ -212,12 +212,13 @@ class Reader:
                 self._count("sample-too-large")
                 return
             if len(proxy.assemblies) >= self._limits.assemblies:
-                # Best effort gives up the oldest; a reliable writer will send the later one again.
-                oldest = min(proxy.assemblies)
-                if proxy.reliable and sequence > oldest:
-                    self._count("assemblies-full")
+                # Best effort gives up the oldest; of a reliable writer the earlier is needed first, and the later
+                # will be sent again.
+                latest = max(proxy.assemblies)
+                self._count("assemblies-full")
+                if proxy.reliable and sequence > latest:
                     return
-                self._drop_assembly(proxy, oldest if not proxy.reliable else max(proxy.assemblies))
+                self._drop_assembly(proxy, latest if proxy.reliable else min(proxy.assemblies))
             if value.sample_size > self._budget.left:
                 self._count("assembly-bytes-full")
                 return

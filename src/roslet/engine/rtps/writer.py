@@ -101,7 +101,7 @@ class Writer:
         self._lifespan = self.qos.lifespan / 1e9 if self.qos.lifespan < INFINITE else None
         self._period = self.qos.deadline / 1e9 if self.qos.deadline < INFINITE else None
         self._miss_at: float | None = None
-        self._paced = 0  # fragment runs that the outbox still holds
+        self._paced: dict[int, int] = {}  # sequence number -> fragment runs that the outbox still holds
         self._preface = Preface(header, self.entity_id)
         self._addresses: tuple[Address, ...] = ()
         self._any_reliable = False
@@ -150,7 +150,7 @@ class Writer:
         if not self._addresses:
             return sequence
         if large:
-            self._outbox.send_paced(self._fragments(change, None, None))
+            self._pace(change, None, None)
             self._ask_soon(now)
             return sequence
         seconds, fraction = times.split(time)
@@ -309,6 +309,8 @@ class Writer:
         if asked:
             absent = []
             for number in asked:
+                if number in self._paced:
+                    continue
                 if number < proxy.start or self.history.get(number) is None:
                     absent.append(number)
                 elif now - proxy.resent.get(number, -1.0) >= RESEND_SUPPRESSION:
@@ -341,10 +343,12 @@ class Writer:
         if change is None:
             self._send_gaps(proxy, [value.sequence])
             return
-        if self._paced:
-            self._count("nack-frag-early")
+        if value.sequence in self._paced:
+            self._count(
+                "nack-frag-early"
+            )  # what it lacks may be on its way; the run ends with another heartbeat
         else:
-            self._outbox.send_paced(self._fragments(change, proxy, value.state.numbers()))
+            self._pace(change, proxy, value.state.numbers())
         self._delay = HEARTBEAT_DELAY
         self._ask_soon(now)
 
@@ -374,7 +378,7 @@ class Writer:
         if change is None:
             return
         if len(change.payload) > self.fragment_size:
-            self._outbox.send_paced(self._fragments(change, proxy, None))
+            self._pace(change, proxy, None)
             return
         if proxy.preface is None:
             proxy.preface = Preface(self._header, self.entity_id, proxy.guid[12:], proxy.info_dst)
@@ -383,6 +387,10 @@ class Writer:
         size = len(change.inline_qos) + len(change.payload)
         front = proxy.preface.emit(number, size, seconds, fraction, flags)
         self._outbox.send((front, change.inline_qos, change.payload), proxy.addresses)
+
+    def _pace(self, change: Change, proxy: "ReaderProxy | None", numbers: "list[int] | None") -> None:
+        self._paced[change.sequence] = self._paced.get(change.sequence, 0) + 1
+        self._outbox.send_paced(self._fragments(change, proxy, numbers), numbers is not None)
 
     def _fragments(
         self, change: Change, proxy: "ReaderProxy | None", numbers: "list[int] | None"
@@ -399,7 +407,6 @@ class Writer:
             reader_id = proxy.guid[12:]
         front += bytes(InfoTimestamp(change.time).emit())
         flags = FRAGMENT_OF_KEY if change.flags & FLAG_K else 0
-        self._paced += 1
         for number in numbers if numbers is not None else range(1, count + 1):
             if number > count:
                 break
@@ -417,11 +424,19 @@ class Writer:
                 flags,
             )
             yield (front + piece.emit_front(), part), self._addresses if proxy is None else proxy.addresses
-        self._paced -= 1
+        left = self._paced[change.sequence] - 1
+        if left:
+            self._paced[change.sequence] = left
+        else:
+            del self._paced[change.sequence]
         if self._any_reliable:
-            tail = HeartbeatFrag(reader_id, self.entity_id, change.sequence, count, self._heartbeats + 1)
-            self._heartbeats += 1
-            parts = (self._header, proxy.info_dst if proxy is not None else b"", tail.emit())
+            # It says no more than this sample: the readers would ask for those that wait behind it.
+            self._heartbeats += 2
+            first = min(self.history.first(self.last + 1), change.sequence + 1)
+            fragments = HeartbeatFrag(reader_id, self.entity_id, change.sequence, count, self._heartbeats - 1)
+            beat = Heartbeat(reader_id, self.entity_id, first, change.sequence, self._heartbeats)
+            to = proxy.info_dst if proxy is not None else b""
+            parts = (self._header, to, fragments.emit(), beat.emit())
             yield parts, self._addresses if proxy is None else proxy.addresses
 
     def _count(self, reason: str) -> None:
