@@ -12,6 +12,7 @@ import struct
 import time
 
 from roslet.engine.rtps.participant import Participant
+from roslet.engine.rtps.writer import HEARTBEAT_DELAY
 from roslet.errors import Unreachable
 from roslet.wire.rtps import locator
 from roslet.wire.rtps.guid import VENDORID_ROSLET
@@ -241,6 +242,17 @@ class Domain:
             self._timer.cancel()
         self._armed = at
         self._timer = self.reactor.call_at(at, self._due)
+
+    def send(self, now: float) -> None:
+        """The short way after `Writer.write`: send what is pending, and leave what is not urgent to the timer if it goes off
+        in time. `now` as given to `write`; with the reactor's lock held."""
+        if self._timer is None or self._armed > now + HEARTBEAT_DELAY or self._closed:
+            self.flush()
+            return
+        for parts, addresses in self.participant.datagrams_to_send(now):
+            self._send(parts, addresses)
+        if self.participant.outbox.deadline() is not None:
+            self.flush()
 
     def _due(self) -> None:
         self._timer = None

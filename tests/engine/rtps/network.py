@@ -58,12 +58,14 @@ class Network:
         self._dice = Dice(seed)
         self._flying: list[tuple[float, int, str, bytes, tuple[str, int]]] = []
         self._serial = 0
+        self._hosts_ever = 0
         self.seen: list[bytes] = []
         self.keep = False
 
     def host(self, **fields: "Any") -> Host:
         """A new participant, started now."""
-        host = Host(self, len(self.hosts) + 1, fields)
+        self._hosts_ever += 1
+        host = Host(self, self._hosts_ever, fields)
         self.hosts.append(host)
         host.participant.start(self.now)
         return host

@@ -1,7 +1,7 @@
 """A DDS-RTPS participant: what a runtime drives. RTPS 2.3, 8.2, 8.3.4 (receiver), 8.4, 8.5.
 
-Not here: endpoints of one and the same participant do not match each other over the network; a node hands such samples over
-itself.
+Endpoints of one participant match each other as any two do, by datagrams to itself, unless `match_own` is False: then
+the node hands such samples over by its own, shorter way.
 """
 
 from roslet.engine.rtps import events
@@ -81,6 +81,7 @@ class Participant:
         lease: float = DEFAULT_LEASE,
         period: float = DEFAULT_PERIOD,
         fragment_size: int = FRAGMENT_SIZE,
+        match_own: bool = True,
         limits: "Limits | None" = None,
     ) -> None:
         if len(guid_prefix) != 12:
@@ -101,6 +102,8 @@ class Participant:
         self._by_writer: dict[bytes, list[tuple[Reader, WriterProxy]]] = {}
         self._assert_at: float | None = None
         self._closed = False
+        self._match_own = match_own
+        self._own_addresses = addresses_of(default, "")[:1]
         own = participant_data.own(
             self.guid_prefix,
             domain_id=domain_id,
@@ -165,7 +168,7 @@ class Participant:
         view = memoryview(datagram)
         try:
             head = header.parse(view)
-            if head.guid_prefix == self.guid_prefix:
+            if head.guid_prefix == self.guid_prefix and not self._match_own:
                 return
             self._source = head.guid_prefix
             self._host = source[0]
@@ -251,6 +254,10 @@ class Participant:
         for remote in list(self.endpoints.values()):
             if not remote.writer:
                 self._consider_reader(writer, remote, now)
+        if self._match_own:
+            for reader in self.readers.values():
+                self._consider_reader(writer, reader.data, now)
+                self._consider_writer(reader, endpoint, now)
         if qos.liveliness[0] == AUTOMATIC and qos.liveliness[1] < INFINITE:
             self._assert_at = now
         return writer
@@ -268,12 +275,18 @@ class Participant:
         for remote in list(self.endpoints.values()):
             if remote.writer:
                 self._consider_writer(reader, remote, now)
+        if self._match_own:
+            for writer in self.writers.values():
+                self._consider_writer(reader, writer.data, now)
+                self._consider_reader(writer, endpoint, now)
         return reader
 
     def delete_writer(self, writer: Writer, now: float) -> None:
         """Withdraw it. Its matches end without events."""
         if self.writers.pop(writer.entity_id, None) is not None:
             del self._all_writers[writer.entity_id]
+            for reader in self.readers.values():
+                self._drop_writer(reader, writer.data)
             self.sedp.withdraw(writer.data, now)
 
     def delete_reader(self, reader: Reader, now: float) -> None:
@@ -283,6 +296,9 @@ class Participant:
                 self._unroute(reader, remote)
                 self._liveliness.forget(reader.entity_id, remote)
                 reader.unmatch(remote)
+            for writer in self.writers.values():
+                if writer.unmatch(reader.data.guid) is not None:
+                    self._deliver(events.EndpointUnmatched(writer.entity_id, reader.data))
             self.sedp.withdraw(reader.data, now)
 
     def assert_liveliness(self, now: float) -> None:
@@ -358,6 +374,8 @@ class Participant:
             self._liveliness.participant_asserted(said.guid_prefix, self._now)
 
     def _heard(self, prefix: bytes) -> float:
+        if prefix == self.guid_prefix:
+            return self._now
         remote = self.spdp.remotes.get(prefix)
         return remote.heard if remote is not None else 0.0
 
@@ -404,6 +422,8 @@ class Participant:
         self._deliver(events.EndpointLost(found))
 
     def _addresses(self, found: EndpointData) -> "tuple[Address, ...]":
+        if found.guid[:12] == self.guid_prefix:
+            return self._own_addresses
         remote = self.spdp.remotes.get(found.guid[:12])
         if remote is None:
             return ()
@@ -463,6 +483,8 @@ class Participant:
             for reader, proxy in routes:
                 if reader_id == ENTITYID_UNKNOWN or reader_id == reader.entity_id:
                     reader.handle_data(proxy, value, self._time, self._now)
+        elif self._source == self.guid_prefix:
+            return  # our own announcement, come back from the group
         elif value.writer_id == guid.ENTITYID_SPDP_BUILTIN_PARTICIPANT_WRITER:
             self.spdp.handle_data(value, self._source, self._host, self._now)
         else:
