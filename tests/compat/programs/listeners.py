@@ -24,9 +24,10 @@ for turn in range(2):
     print([message.data for message in heard], pub.get_num_connections(), sub.get_num_connections())
     if turn == 0:
         sub.unregister()
-        rospy.sleep(0.2)
-        pub.publish("to nobody")
-        rospy.sleep(0.2)
+        while pub.get_num_connections():
+            pub.publish("to nobody")  # rospy notices when it writes
+            rospy.sleep(0.05)
+        rospy.sleep(0.1)
         print("now", pub.get_num_connections())
 pub.unregister()
 try:
