@@ -25,6 +25,7 @@ class Assembly:
         self.data = bytearray(self.size)
         self.have = bytearray(self.count)
         self.left = self.count
+        self.told = 0  # the writer said to have sent the fragments up to this one
         self.lowest = 0  # no fragment below this is missing
         self.inline_qos = bytes(fragment.inline_qos)
         self.little = fragment.little

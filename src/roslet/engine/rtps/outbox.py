@@ -10,6 +10,8 @@ if TYPE_CHECKING:
 
 # Octets that one peer's default socket buffer (208 KiB on Linux) takes at once.
 BURST = 192 * 1024
+# The most that a burst grows to while receivers lose nothing of it.
+MAX_BURST = 2 << 20
 # Seconds that a peer gets to empty it. Loops that sleep in whole milliseconds reach some 190 MB/s.
 INTERVAL = 0.0004
 
@@ -18,7 +20,7 @@ class Outbox:
     """`urgent` goes out with the next call, `bulk` a burst at a time."""
 
     def __init__(self, burst: int = BURST, interval: float = INTERVAL) -> None:
-        self.burst = burst
+        self.burst = self._least = burst
         self.interval = interval
         self._urgent: list[Datagram] = []
         self._bulk: list[Iterator[Datagram]] = []
@@ -35,6 +37,14 @@ class Outbox:
             self._bulk.insert(0, datagrams)
         else:
             self._bulk.append(datagrams)
+
+    def widen(self) -> None:
+        """A large sample went through at once: the next bursts are larger."""
+        self.burst = min(2 * self.burst, max(MAX_BURST, self._least))
+
+    def narrow(self) -> None:
+        """Fragments were lost: the next bursts are smaller, but not below the first."""
+        self.burst = max(self.burst // 2, self._least)
 
     def take(self, now: float) -> "list[Datagram]":
         """What is to be sent now."""

@@ -35,7 +35,7 @@ HELLO_TIMES = 8
 
 
 class WriterProxy:
-    """A matched remote writer. `next`: the lowest number not yet delivered; `last`: the highest it is known to have."""
+    """A matched remote writer. `next`: the lowest number not yet delivered; `last`: the highest it said to have."""
 
     __slots__ = (
         "ack_at",
@@ -140,8 +140,6 @@ class Reader:
             # The ordinary case first.
             proxy.next = sequence + 1
             proxy.synced = True
-            if sequence > proxy.last:
-                proxy.last = sequence
             self._hand_over(proxy, value, time)
             if proxy.held:
                 self._drain(proxy)
@@ -171,8 +169,6 @@ class Reader:
         value.inline_qos = bytes(value.inline_qos)
         proxy.held[sequence] = (value, time)
         proxy.held_bytes += size
-        if sequence > proxy.last:
-            proxy.last = sequence
 
     def _hand_over(self, proxy: WriterProxy, value: "Data", time: "int | None") -> None:
         self._deliver(
@@ -228,8 +224,6 @@ class Reader:
             self._count("fragment-of-another-size")
             return
         if assembly.left:
-            if sequence > proxy.last:
-                proxy.last = sequence
             return
         self._drop_assembly(proxy, sequence)
         flags = FLAG_K if assembly.flags & FRAGMENT_OF_KEY else FLAG_D
@@ -263,8 +257,11 @@ class Reader:
 
     def handle_heartbeat_frag(self, proxy: WriterProxy, value: "HeartbeatFrag", now: float) -> None:
         """A HEARTBEAT_FRAG of a matched writer: ask for what is missing of that sample."""
-        if proxy.reliable and value.sequence in proxy.assemblies:
-            self._acknowledge_at(proxy, now)
+        assembly = proxy.assemblies.get(value.sequence)
+        if proxy.reliable and assembly is not None:
+            assembly.told = max(assembly.told, value.last_fragment)
+            if proxy.ack_at is None:
+                proxy.ack_at = max(now, proxy.nacked_at + NACK_INTERVAL)
 
     def handle_gap(self, proxy: WriterProxy, value: "Gap", now: float) -> None:
         """A GAP of a matched writer: those numbers never come."""
@@ -338,18 +335,20 @@ class Reader:
 
     def _answer(self, proxy: WriterProxy, now: float) -> None:
         missing = []
-        partial = []
         for sequence in range(proxy.next, min(proxy.last + 1, proxy.next + number_set.MAX_BITS)):
-            if sequence in proxy.assemblies:
-                partial.append(sequence)
-            elif sequence not in proxy.held:
+            if sequence not in proxy.held and sequence not in proxy.assemblies:
                 missing.append(sequence)
+        partial = []
+        for sequence, assembly in proxy.assemblies.items():
+            # What the writer has not yet said to have sent is on its way.
+            lacks = assembly.missing(assembly.count if sequence <= proxy.last else assembly.told)
+            if lacks.bits:
+                partial.append((sequence, lacks))
         if missing or partial:
             proxy.nacked_at = now
         self._send_acknack(proxy, missing, not missing and not partial)
-        for sequence in partial:
+        for sequence, lacks in partial:
             proxy.frag_count += 1
-            lacks = proxy.assemblies[sequence].missing(proxy.assemblies[sequence].count)
             request = NackFrag(self.entity_id, proxy.guid[12:], sequence, lacks, proxy.frag_count)
             self._outbox.send((self._header, proxy.info_dst, request.emit()), proxy.addresses)
 

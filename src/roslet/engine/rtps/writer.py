@@ -108,6 +108,8 @@ class Writer:
         self._since_heartbeat = 0
         self._heartbeats = 0
         self._heartbeat_at: float | None = None
+        self._large = 0  # the last sample that went in fragments, until somebody has it
+        self._large_whole = True  # and nobody asked for a part of it again
         self._delay = HEARTBEAT_DELAY
 
     # -- what its owner does
@@ -150,6 +152,8 @@ class Writer:
         if not self._addresses:
             return sequence
         if large:
+            self._large = sequence
+            self._large_whole = True
             self._pace(change, None, None)
             self._ask_soon(now)
             return sequence
@@ -300,6 +304,10 @@ class Writer:
             self.history.forget_expired(now)
         acked = min(value.state.base - 1, self.last)
         if acked > proxy.acked:
+            if proxy.acked < self._large <= acked:
+                if self._large_whole:
+                    self._outbox.widen()
+                self._large = 0
             proxy.acked = acked
             self._delay = HEARTBEAT_DELAY
             if proxy.resent:
@@ -347,11 +355,13 @@ class Writer:
         if change is None:
             self._send_gaps(proxy, [value.sequence])
             return
+        self._large_whole = False
         if value.sequence in self._paced:
             self._count(
                 "nack-frag-early"
             )  # what it lacks may be on its way; the run ends with another heartbeat
         else:
+            self._outbox.narrow()
             self._pace(change, proxy, value.state.numbers())
         self._delay = HEARTBEAT_DELAY
         self._ask_soon(now)
