@@ -40,6 +40,7 @@ NOT_HERE = {
     "rostopic": "`roslet topic` does what its functions do",
     "rosservice": "`roslet service` does what its functions do",
     "roslaunch": "start each program with `roslet run`",
+    "rospkg": "it is on PyPI: pip install rospkg",
     "rosmsg": "`roslet interface` does what its functions do",
 }
 
