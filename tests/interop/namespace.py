@@ -11,7 +11,7 @@ from types import TracebackType
 
 import pytest
 
-_SETUP = "ip link set lo up multicast on && ip route add 239.0.0.0/8 dev lo && echo up && exec sleep 600"
+_ROUTE = "ip link set lo multicast on && ip route add 239.0.0.0/8 dev lo"
 
 
 class Program:
@@ -50,10 +50,11 @@ class Program:
 
 
 class Namespace:
-    """Use as a context manager: `start` runs programs in it, all of which end with it."""
+    """A context manager: `start` runs programs in it, all of which end with it. `route`: whether multicast has one."""
 
-    def __init__(self, folder: pathlib.Path) -> None:
+    def __init__(self, folder: pathlib.Path, route: bool = True) -> None:
         self.folder = folder
+        self._setup = f"ip link set lo up && {_ROUTE if route else 'true'} && echo up && exec sleep 600"
         self.programs: list[Program] = []
 
     def __enter__(self) -> Namespace:
@@ -61,7 +62,7 @@ class Namespace:
             ["unshare", "--net"] if os.geteuid() == 0 else ["unshare", "--user", "--map-root-user", "--net"]
         )
         self._holder = subprocess.Popen(
-            [*unshare, "sh", "-c", _SETUP], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            [*unshare, "sh", "-c", self._setup], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
         assert self._holder.stdout is not None
         if self._holder.stdout.readline() != "up\n":
