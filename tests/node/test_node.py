@@ -51,6 +51,14 @@ def test_an_illegal_name_is_refused_and_leaves_no_socket(make: Nodes, options: d
     assert descriptors() == before
 
 
+def test_a_node_that_cannot_begin_leaves_nothing_behind(make: Nodes, master: MasterServer) -> None:
+    before = descriptors()
+    with pytest.raises(roslet.InvalidMessage):
+        make("a", arguments=["_p:=99999999999999999999"])  # more than 64 bits
+    assert registered(master) == []
+    wait_until(lambda: descriptors() <= before + 1, "every descriptor is closed")
+
+
 def test_anonymous_nodes_have_names_of_their_own(make: Nodes) -> None:
     names = {make("a", anonymous=True).name for _ in range(5)}
     assert len(names) == 5 and all(name.startswith("/a_") for name in names)

@@ -123,7 +123,11 @@ class Node(MasterApi):
                 self._engine, self.reactor, "127.0.0.1" if host in ("127.0.0.1", "localhost") else ""
             )
         _open_nodes.add(self)
-        self._begin()
+        try:
+            self._begin()
+        except BaseException:
+            self.close()
+            raise
 
     def _begin(self) -> None:
         """Log to /rosout, follow /clock where it is asked for, set the private parameters of the arguments."""
@@ -435,7 +439,8 @@ class Node(MasterApi):
         self._shell.update()
 
     def _count(self, reason: str) -> None:
-        self._engine.count(reason)
+        with self._closing:  # publishing threads count too
+            self._engine.count(reason)
 
     def _call_back(self, function: Callable[..., object], *arguments: object) -> None:
         """Call `function` inside spin. Peers cause these calls, so there is a bound to how many may wait."""

@@ -30,7 +30,7 @@ class Service:
         self.name = name
         self.type = service_type
         self.calls = 0
-        self._handler = handler
+        self._handler: Callable[..., Any] = handler
         self._with_link = False
         self._entry: ServiceOffer | None = node._offer(self, self._serve)
 
@@ -46,7 +46,7 @@ class Service:
             self.node._count("malformed-request")
             raise ServiceFailed(f"{self.name}: malformed request: {error}") from None
         try:
-            response = self._handler(request, link) if self._with_link else self._handler(request)  # type: ignore[call-arg]
+            response = self._handler(request, link) if self._with_link else self._handler(request)
             return self._serialize(response)
         except Exception as error:
             if not isinstance(error, ServiceFailed):

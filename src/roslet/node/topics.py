@@ -397,7 +397,7 @@ class Subscription:
         self.messages = 0
         self.malformed = 0
         self.dropped = 0
-        self._callback = callback
+        self._callback: Callable[..., object] | None = callback
         self._queue: deque[Any] = deque()
         self._waiters: list[Callable[[], None]] = []
         self._local: deque[Any] = deque()  # from this node's own publisher
@@ -434,7 +434,7 @@ class Subscription:
                 return
             try:
                 if self._with_link:
-                    callback(message, link)  # type: ignore[call-arg]
+                    callback(message, link)
                 else:
                     callback(message)
             except Exception as error:
@@ -479,7 +479,7 @@ class Subscription:
                 continue
             try:
                 if self._with_link:
-                    callback(message, None)  # type: ignore[call-arg]
+                    callback(message, None)
                 else:
                     callback(message)
             except Exception as error:

@@ -52,7 +52,7 @@ class FrameReceiver:
         self._head = 4 + prefix
         self._prefix = prefix
         self._chunk_size = chunk
-        self._chunk_view = memoryview(b"")  # made when the first bytes come: many a link never receives a frame
+        self._chunk_view = memoryview(b"")  # made when the first bytes come; many links never receive any
         self._start = 0
         self._end = 0
         self._large: bytearray | None = None  # the buffer of the large frame being received
