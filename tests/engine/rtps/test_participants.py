@@ -457,3 +457,21 @@ def test_a_peer_that_comes_back_a_hundred_times_leaves_nothing_behind() -> None:
     assert len(writer.history) == 0
     for builtin in participant.sedp.writers.values():
         assert builtin.proxies == {}
+
+
+def test_large_samples_that_were_overwritten_while_they_waited_are_not_sent() -> None:
+    for policies in (
+        BEST_EFFORT.replace(history=(qos.KEEP_LAST, 2)),
+        RELIABLE.replace(history=(qos.KEEP_LAST, 2)),
+    ):
+        network = Network()
+        _, other, writer, reader = pair(network, policies, policies)
+        assert matched(network, writer, reader)
+        network.run(1)
+        before = network.bytes
+        for number in range(100):
+            writer.write(body(number, 400000), network.now)
+        assert network.run(10, lambda: 99 in numbers(other))
+        network.run(1)
+        assert network.bytes - before < 3 * 400000
+        assert writer._paced == {}

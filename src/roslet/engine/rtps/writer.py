@@ -36,6 +36,8 @@ HEARTBEAT_DELAY = 0.02
 HEARTBEAT_LONGEST = 0.25
 # Seconds in which a second request for the same sample by the same reader is taken for an echo of the first.
 RESEND_SUPPRESSION = 0.005
+# Samples of which that is remembered, for one reader; beyond, an echo costs a datagram.
+MAX_RESENT = 1024
 # Octets of sample in one datagram: below the limit of UDP over IPv4 with room for the submessages before it.
 FRAGMENT_SIZE = 60000
 
@@ -322,6 +324,8 @@ class Writer:
                 if number < proxy.start or self.history.get(number) is None:
                     absent.append(number)
                 elif now - proxy.resent.get(number, -1.0) >= RESEND_SUPPRESSION:
+                    if len(proxy.resent) > MAX_RESENT:
+                        proxy.resent.clear()
                     proxy.resent[number] = now
                     self._send_to(proxy, number, now)
             if absent:
@@ -422,7 +426,7 @@ class Writer:
         front += bytes(InfoTimestamp(change.time).emit())
         flags = FRAGMENT_OF_KEY if change.flags & FLAG_K else 0
         for number in numbers if numbers is not None else range(1, count + 1):
-            if number > count:
+            if number > count or self._superseded(change):
                 break
             part = view[(number - 1) * size : number * size]
             piece = DataFrag(
@@ -452,6 +456,12 @@ class Writer:
             to = proxy.info_dst if proxy is not None else b""
             parts = (self._header, to, fragments.emit(), beat.emit())
             yield parts, self._addresses if proxy is None else proxy.addresses
+
+    def _superseded(self, change: Change) -> bool:
+        """Whether nobody needs the rest of a sample: acknowledged, expired, or overwritten while it waited its turn."""
+        if self.keeps or self._any_reliable:
+            return self.history.get(change.sequence) is None
+        return not self.history.keep_all and self.last - change.sequence >= self.history.depth
 
     def _count(self, reason: str) -> None:
         self._counters[reason] = self._counters.get(reason, 0) + 1
