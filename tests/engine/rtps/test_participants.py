@@ -470,8 +470,8 @@ def test_large_samples_that_were_overwritten_while_they_waited_are_not_sent() ->
         network.run(1)
         before = network.bytes
         for number in range(100):
-            writer.write(body(number, 400000), network.now)
+            writer.write(body(number, 130000), network.now)
         assert network.run(10, lambda: 99 in numbers(other))
         network.run(1)
-        assert network.bytes - before < 3 * 400000
+        assert network.bytes - before < 8 * 130000
         assert writer._paced == {}
