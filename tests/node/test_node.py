@@ -163,6 +163,19 @@ def test_a_change_of_a_parameter_is_told_inside_spin(make: Nodes) -> None:
     wait_until(lambda: len(seen) == 2, "and the next")
 
 
+def test_a_namespace_is_told_whole_whoever_changed_it(make: Nodes) -> None:
+    a, b = make("a"), make("b")
+    seen: list[Any] = []
+    a.set_parameter("/ns", {"left": 1, "right": {"gain": 2}})
+    assert a.on_parameter("/ns", seen.append) == {"left": 1, "right": {"gain": 2}}
+    b.set_parameter("/ns/right/gain", 3)
+    wait_until(lambda: seen == [{"left": 1, "right": {"gain": 3}}], "another node's change is told")
+    a.set_parameter("/ns/left", 4)
+    wait_until(lambda: seen[1:] == [{"left": 4, "right": {"gain": 3}}], "its own change is told")
+    a.delete_parameter("/ns/left")
+    wait_until(lambda: seen[2:] == [{"right": {"gain": 3}}], "and that something is gone")
+
+
 def test_callbacks_that_peers_cause_have_a_bound(make: Nodes) -> None:
     from roslet.node import node as module
 

@@ -53,14 +53,24 @@ class MasterApi:
 
     def set_parameter(self, name: str, value: Any) -> None:
         """Set a parameter to bool, int, float, str, bytes, list or dict."""
-        self.call_master("setParam", self.resolve(name), value)
+        full = self.resolve(name)
+        self.call_master("setParam", full, value)
+        self._changed_here(full, value)
 
     def delete_parameter(self, name: str) -> None:
         """Raises ParameterNotSet."""
         try:
-            self.call_master("deleteParam", self.resolve(name))
+            full = self.resolve(name)
+            self.call_master("deleteParam", full)
         except Fault as error:
             raise ParameterNotSet(error.message) from None
+        self._changed_here(full, {})
+
+    def _changed_here(self, full: str, value: Any) -> None:
+        """The master tells everybody of a change but the node that made it."""
+        with self.reactor.lock:
+            if self._engine.watches(full):
+                self._engine.parameter_changed(full, value)
 
     def has_parameter(self, name: str) -> bool:
         """Whether there is a parameter, or a namespace of parameters, of this name."""
@@ -78,7 +88,10 @@ class MasterApi:
         return [str(name) for name in self.call_master("getParamNames")]
 
     def on_parameter(self, name: str, callback: Callable[[Any], object]) -> Any:
-        """Call `callback(value)` inside spin whenever the parameter changes; returns its present value, {} where unset."""
+        """Call `callback(value)` inside spin whenever the parameter changes, whoever changed it; returns its present value.
+
+        The value of a namespace is the dict of all below it. {} stands for unset.
+        """
         self._check_open()
         full = self.resolve(name)
         self._parameter_callbacks.setdefault(full, []).append(callback)

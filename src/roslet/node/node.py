@@ -260,10 +260,8 @@ class Node(MasterApi):
     def _parameter_changed(self, key: str, value: object) -> None:
         if key == "/use_sim_time":
             self._sim_time_known(value, None, 0.0)
-        for name, callbacks in self._parameter_callbacks.items():
-            if key == name or key.startswith(name.rstrip("/") + "/"):
-                for callback in callbacks:
-                    self._call_back(callback, value)
+        for callback in self._parameter_callbacks.get(key, ()):
+            self._call_back(callback, value)
 
     def _sim_time_known(self, value: object, error: Exception | None, now: float) -> None:
         if error is not None or value is not True or self.clock.simulated:

@@ -424,7 +424,8 @@ def test_a_watched_parameter_is_told_and_kept() -> None:
     network.run(0.5)
     listener.ask_master("setParam", "/ns/deep", "x")
     network.run(0.5)
-    assert seen == [("/ns", 1), ("/ns/deep", "x")] and talker.engine.parameters == {"/ns": 1}
+    assert seen == [("/ns", 1), ("/ns", {"deep": "x"})]
+    assert talker.engine.parameters == {"/ns": {"deep": "x"}}
     master.tell(talker.engine.uri, "paramUpdate", "/ns/", 2)  # rosmaster puts a slash at the end
     master.tell(talker.engine.uri, "paramUpdate", "/nsx", 3)
     master.tell(talker.engine.uri, "paramUpdate", 4, 4)

@@ -356,14 +356,27 @@ class Engine:
         return answered
 
     def parameter_changed(self, key: str, value: object) -> None:
+        """The parameter `key` is `value` now (`{}`: deleted), as the master tells, or this node, which the master does not
+        tell of its own doing. What watches a namespace around it gets the whole namespace."""
         key = key[:-1] if len(key) > 1 and key.endswith("/") else key
-        if not [watched for watched in self._watched if _is_within(key, watched)]:
+        concerned = [watched for watched in self._watched if _is_within(key, watched)]
+        if not concerned:
             self.count("parameter-not-subscribed")
-            return
-        if key in self._watched:
-            self.parameters[key] = value
-        if self.on_parameter is not None:
-            self.on_parameter(key, value)
+        for watched in concerned:
+            rest = [part for part in key[len(watched) :].split("/") if part]
+            old = self.parameters.get(watched)
+            whole = _replaced(old, rest, value)
+            self.parameters[watched] = whole
+            # Some masters tell the node that made a change as well: it knows already.
+            if whole != old and self.on_parameter is not None:
+                self.on_parameter(watched, whole)
+
+    def watches(self, key: str) -> bool:
+        """Whether a change of the parameter `key` is of interest here."""
+        for watched in self._watched:
+            if _is_within(key, watched):
+                return True
+        return False
 
     # -- connections in
 
@@ -452,6 +465,19 @@ class Engine:
 
 def _is_within(key: str, watched: str) -> bool:
     return key == watched or watched == "/" or key.startswith(watched + "/")
+
+
+def _replaced(tree: object, path: "list[str]", value: object) -> object:
+    """A copy of `tree`, a dict of dicts, in which the value at `path` is another; `{}` deletes it."""
+    if not path:
+        return value
+    copy = dict(tree) if isinstance(tree, dict) else {}
+    inner = _replaced(copy.get(path[0]), path[1:], value)
+    if inner == {}:
+        copy.pop(path[0], None)
+    else:
+        copy[path[0]] = inner
+    return copy
 
 
 def _hand(event: object, done: "Answered", now: float) -> None:
