@@ -128,17 +128,17 @@ class Publisher:
             links = entry.links
             parts: list[Any] | None = None if self._latch or entry.senders else []
             try:
-                end = message.serialize_into(self._buffer, 4, parts)
+                end = message.serialize_into(self._view, 4, parts)
             except BufferTooSmall as error:
                 self._grow(4 + error.size)
                 if parts:
                     parts = []
-                end = message.serialize_into(self._buffer, 4, parts)
+                end = message.serialize_into(self._view, 4, parts)
             self.messages += 1
             if parts:
                 self._send_parts(links, parts, end)
             else:
-                pack_into("<I", self._buffer, 0, end - 4)
+                pack_into("<I", self._view, 0, end - 4)
                 frame = self._view[:end]
                 for link in links:
                     # The usual case first: nothing waits, so try the socket at once.
@@ -199,7 +199,7 @@ class Publisher:
             at = position
         if end > at:
             buffers.append(self._view[at:end])
-        pack_into("<I", self._buffer, 0, total - 4)
+        pack_into("<I", self._view, 0, total - 4)
         frame: bytes | None = None
         for link in links:
             if link.queue.bytes == 0 and len(buffers) <= MAX_GATHER:
