@@ -373,10 +373,7 @@ class Engine:
 
     def watches(self, key: str) -> bool:
         """Whether a change of the parameter `key` is of interest here."""
-        for watched in self._watched:
-            if _is_within(key, watched):
-                return True
-        return False
+        return any(_is_within(key, watched) for watched in self._watched)
 
     # -- connections in
 
