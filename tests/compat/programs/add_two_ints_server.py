@@ -2,20 +2,18 @@
 import rospy
 from beginner_tutorials.srv import AddTwoInts, AddTwoIntsResponse
 
-
-def handle_add_two_ints(req):
-    print("Returning [%s + %s = %s]" % (req.a, req.b, (req.a + req.b)), flush=True)
-    if req.b == 99:
-        rospy.Timer(rospy.Duration(0.1), lambda event: rospy.signal_shutdown("told so"), oneshot=True)
-    return AddTwoIntsResponse(req.a + req.b)
+LAST = 99
 
 
-def add_two_ints_server():
-    rospy.init_node("add_two_ints_server")
-    s = rospy.Service("add_two_ints", AddTwoInts, handle_add_two_ints)
-    print("Ready to add two ints.", s.resolved_name, flush=True)
-    rospy.spin()
+def add(request):
+    total = request.a + request.b
+    print("asked for", request.a, "and", request.b, "so", total, flush=True)
+    if request.b == LAST:
+        rospy.Timer(rospy.Duration(0.1), lambda event: rospy.signal_shutdown("the last one"), oneshot=True)
+    return AddTwoIntsResponse(total)
 
 
-if __name__ == "__main__":
-    add_two_ints_server()
+rospy.init_node("add_two_ints_server")
+service = rospy.Service("add_two_ints", AddTwoInts, add)
+print("serving", service.resolved_name, flush=True)
+rospy.spin()

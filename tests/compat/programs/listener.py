@@ -1,20 +1,24 @@
 #!/usr/bin/env python3
+import re
+
 import rospy
 from std_msgs.msg import String
 
 
-def callback(data):
-    rospy.loginfo(rospy.get_name().rstrip("0123456789_") + " I heard %s", data.data)
-    if data.data.endswith("4"):
-        rospy.signal_shutdown("heard enough")
+class Watch:
+    def __init__(self):
+        self.seen = 0
+        self.subscriber = rospy.Subscriber("chatter", String, self.on_lamp)
+
+    def on_lamp(self, lamp):
+        self.seen += 1
+        who = re.match("[a-z/]+", rospy.get_name()).group()  # what follows the name is random
+        rospy.loginfo("%s saw <%s>", who, lamp.data)
+        if " 0 to come" in lamp.data:
+            rospy.signal_shutdown("all lamps are lit")
 
 
-def listener():
-    rospy.init_node("listener", anonymous=True)
-    rospy.Subscriber("chatter", String, callback)
-    rospy.spin()
-    print("listener ends")
-
-
-if __name__ == "__main__":
-    listener()
+rospy.init_node("listener", anonymous=True)
+watch = Watch()
+rospy.spin()
+print("lamps:", watch.seen, watch.subscriber.resolved_name)

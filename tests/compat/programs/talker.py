@@ -1,24 +1,24 @@
 #!/usr/bin/env python3
-# The publisher is made before the node, as the first tutorial does.
+# A publisher that exists before its node does; init_node gives it the network.
 import rospy
 from std_msgs.msg import String
 
+BEACON = rospy.Publisher("chatter", String, queue_size=10)
 
-def talker():
-    pub = rospy.Publisher("chatter", String, queue_size=10)
+
+def main():
     rospy.init_node("talker", anonymous=True)
-    rate = rospy.Rate(50)
-    while pub.get_num_connections() == 0 and not rospy.is_shutdown():
-        rate.sleep()
-    for number in range(5):
-        hello_str = "hello world %d" % number
-        rospy.loginfo(hello_str)
-        pub.publish(hello_str)
-        rate.sleep()
+    beat = rospy.Rate(50)
+    while not rospy.is_shutdown() and not BEACON.get_num_connections():
+        beat.sleep()
+    for left in range(4, -1, -1):
+        text = "lamp %d of 5, %d to come" % (5 - left, left)
+        BEACON.publish(text)
+        rospy.loginfo("lit: " + text)
+        beat.sleep()
 
 
-if __name__ == "__main__":
-    try:
-        talker()
-    except rospy.ROSInterruptException:
-        pass
+try:
+    main()
+except rospy.ROSInterruptException:
+    print("interrupted")
