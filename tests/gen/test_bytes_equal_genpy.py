@@ -1,4 +1,4 @@
-"""Every ROS 1 type of Debian's packages, byte for byte as ROS 1's own Python has it."""
+"""Every ROS 1 type of Debian's packages, installed or only unpacked, byte for byte as ROS 1's own Python has it."""
 
 from __future__ import annotations
 
@@ -8,20 +8,32 @@ from collections.abc import Iterator
 import pytest
 
 from oracle import Oracle
-from peers import require
+from peers import CACHE, require
 from random_values import STYLES, Values, fill, plain
+from roslet import idl
 from roslet.gen import runtime
 from roslet.idl import Registry
 from roslet.wire import ros1
 
 SHARE = pathlib.Path("/usr/share")
+UNPACKED = CACHE / "ros1-definitions/usr/share"  # of packages that are not installed
+BUNDLED = pathlib.Path(idl.__file__).parent / "definitions/ros1"
+# Debian ships its Python classes and not its definitions; ours are bundled.
+WITHOUT_DEFINITIONS = "roscpp"
 
 
 def _types() -> list[str]:
-    found = [f"{path.parent.parent.name}/{path.stem}" for path in SHARE.glob("*/msg/*.msg")]
-    for path in SHARE.glob("*/srv/*.srv"):
-        found += [f"{path.parent.parent.name}/{path.stem}{part}" for part in ("Request", "Response")]
-    return sorted(found)
+    found: set[str] = set()
+    for root in (SHARE, UNPACKED):
+        found |= _types_of(root, "*")
+    return sorted(found | _types_of(BUNDLED, WITHOUT_DEFINITIONS))
+
+
+def _types_of(root: pathlib.Path, package: str) -> set[str]:
+    found = {f"{path.parent.parent.name}/{path.stem}" for path in root.glob(f"{package}/msg/*.msg")}
+    for path in root.glob(f"{package}/srv/*.srv"):
+        found |= {f"{path.parent.parent.name}/{path.stem}{part}" for part in ("Request", "Response")}
+    return found
 
 
 def _packages() -> list[str]:
@@ -31,14 +43,15 @@ def _packages() -> list[str]:
 @pytest.fixture(scope="module")
 def genpy() -> Iterator[Oracle]:
     require("genpy")
-    oracle = Oracle(pathlib.Path("/usr/bin/python3"), "genpy_messages.py")
+    oracle = Oracle(pathlib.Path("/usr/bin/python3"), "genpy_messages.py", str(UNPACKED))
     yield oracle
     oracle.close()
 
 
 @pytest.fixture(autouse=True)
 def debian_definitions(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(runtime, "_registries", {"ros1": Registry("ros1", {"ROS_PACKAGE_PATH": str(SHARE)})})
+    registry = Registry("ros1", {"ROS_PACKAGE_PATH": f"{SHARE}:{UNPACKED}"})
+    monkeypatch.setattr(runtime, "_registries", {"ros1": registry})
     monkeypatch.setattr(runtime, "_classes", {})
 
 
@@ -64,6 +77,8 @@ def test_every_debian_type_has_the_bytes_and_values_of_genpy(genpy: Oracle, pack
 
 
 def test_there_are_types_to_compare() -> None:
-    if not SHARE.joinpath("std_msgs").exists():
-        require("genpy")
-    assert len(_types()) > 150
+    require("genpy")
+    require("ros1-definitions")
+    assert len(_types_of(SHARE, "*")) > 150
+    assert len(_types_of(UNPACKED, "*")) > 30
+    assert {"roscpp/Logger", "roscpp/GetLoggersRequest"} <= set(_types())

@@ -2,6 +2,7 @@
 
 Each line of standard input is JSON: {"type": "pkg/Name", "value": fields, "data": hex}. The answer, one line:
 {"data": what genpy serialises of the value, in hex, "value": what it reads from the data given} or {"error": text}.
+Arguments: folders of package folders, beside Debian's own, whose definitions have no Python classes installed.
 A time or duration is {"secs", "nsecs"}, an array a list, a uint8 array a list of integers. A service's request is
 `pkg/NameRequest`.
 """
@@ -20,7 +21,7 @@ import genpy.dynamic
 import genpy.message
 
 CLASSES = {}
-SHARE = pathlib.Path("/usr/share")
+ROOTS = [pathlib.Path("/usr/share"), *map(pathlib.Path, sys.argv[1:])]
 
 
 def definition(name):
@@ -28,16 +29,18 @@ def definition(name):
     from genmsg import gentools, msg_loader
 
     context = msg_loader.MsgContext.create_default()
-    search = {path.name: [str(path / "msg")] for path in SHARE.iterdir() if (path / "msg").is_dir()}
+    packages = {path.parent.name: path.parent for root in ROOTS for path in root.glob("*/msg")}
+    packages.update({path.parent.name: path.parent for root in ROOTS for path in root.glob("*/srv")})
+    search = {name: [str(path / "msg")] for name, path in packages.items() if (path / "msg").is_dir()}
     package, short = name.split("/")
     for part in ("Request", "Response"):
-        path = SHARE / package / "srv" / (short[: -len(part)] + ".srv")
+        path = packages[package] / "srv" / (short[: -len(part)] + ".srv")
         if short.endswith(part) and path.exists():
             service = msg_loader.load_srv_from_file(context, str(path), name[: -len(part)])
             spec = service.request if part == "Request" else service.response
             msg_loader.load_depends(context, spec, search)
             return gentools.compute_full_text(context, spec)
-    spec = msg_loader.load_msg_from_file(context, str(SHARE / package / "msg" / (short + ".msg")), name)
+    spec = msg_loader.load_msg_from_file(context, str(packages[package] / "msg" / (short + ".msg")), name)
     msg_loader.load_depends(context, spec, search)
     return gentools.compute_full_text(context, spec)
 
