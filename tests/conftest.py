@@ -1,4 +1,4 @@
-"""What holds for every test: markers, an isolated ROS environment, a summary of absent peers."""
+"""What holds for every test: markers, an isolated ROS environment, a summary of absent peers, no skip in CI."""
 
 from __future__ import annotations
 
@@ -38,7 +38,24 @@ def _remove(folder: str) -> None:
     shutil.rmtree(folder, ignore_errors=True)
 
 
+def _skipped(config: pytest.Config) -> list[str]:
+    """The tests and modules that were skipped, each once, where none may be: where CI is set."""
+    reporter = config.pluginmanager.get_plugin("terminalreporter")
+    if reporter is None or not os.environ.get("CI"):
+        return []
+    return sorted({report.nodeid for report in reporter.stats.get("skipped", [])})
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    if _skipped(session.config) and session.exitstatus == pytest.ExitCode.OK:
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    skipped = _skipped(terminalreporter.config)
+    if skipped:
+        line = f"FAILED: CI is set, and nothing may be skipped there: {', '.join(skipped)}"
+        terminalreporter.write_line(line, red=True, bold=True)
     absent = {
         str(report.longrepr[2])
         for report in terminalreporter.stats.get("skipped", [])

@@ -8,6 +8,7 @@ import struct
 from typing import Any
 
 import pytest
+import yaml  # type: ignore[import-untyped,unused-ignore]
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -16,8 +17,6 @@ from roslet.cli.output import json_text
 from roslet.cli.render import Style, float_text, plain, select, shortest32, yaml_lines
 from roslet.gen.runtime import message_class
 from roslet.wire.time import Time
-
-yaml = pytest.importorskip("yaml")
 
 
 def ros1(name: str) -> Any:

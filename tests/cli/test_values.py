@@ -23,7 +23,6 @@ def made(name: str, *arguments: str) -> Any:
 @pytest.fixture(params=["with PyYAML", "without PyYAML"])
 def yaml_or_not(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> bool:
     if request.param == "with PyYAML":
-        pytest.importorskip("yaml")
         return True
     monkeypatch.setitem(sys.modules, "yaml", None)
     return False
@@ -55,7 +54,6 @@ def test_without_pyyaml_the_way_to_get_yaml_is_named(monkeypatch: pytest.MonkeyP
 
 
 def test_an_error_in_a_yaml_file_names_its_line() -> None:
-    pytest.importorskip("yaml")
     with pytest.raises(CommandError, match=r"file\.yaml: line 3, column 1: "):
         read_document("a: 1\nb: [\n", "file.yaml")
 

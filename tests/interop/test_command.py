@@ -11,11 +11,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+import yaml  # type: ignore[import-untyped,unused-ignore]
 
 import peers
 from interop.ros1 import Master, Program, Tools, wait_until
-
-yaml = pytest.importorskip("yaml")
 
 CROWD = {
     "header": {"seq": 0, "stamp": {"secs": 1, "nsecs": 2}, "frame_id": "hall"},

@@ -11,7 +11,7 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
-import pytest
+from rosbags import rosbag1
 
 import roslet
 from interop import exchange
@@ -244,13 +244,12 @@ def test_rosbag_records_what_we_publish_and_plays_it_to_us(node: Node, tools: To
 
 def test_a_recording_carries_our_full_definitions(node: Node, tools: Tools, topic: str) -> None:
     """Another implementation, which has never heard of the type, reads the bag."""
-    rosbags = pytest.importorskip("rosbags.rosbag1")
     bag = tools.folder / f"{topic[1:]}.bag"
     with node.publisher(topic, "peer_msgs/Crowd", qos=roslet.QoS(durability="transient_local")) as publisher:
         publisher.publish(message("peer_msgs/Crowd", 1, 2))
         recorder = tools.start("rosbag", "record", "-l", "1", "-O", str(bag), topic)
         recorder.finish()
-    with rosbags.Reader(pathlib.Path(bag)) as reader:
+    with rosbag1.Reader(pathlib.Path(bag)) as reader:
         (connection,) = reader.connections
         definition = str(getattr(connection.msgdef, "data", connection.msgdef))
         assert connection.msgtype == "peer_msgs/msg/Crowd"
