@@ -53,9 +53,6 @@ PRIMITIVE_SIZE = {
 }
 """Bytes of every fixed-size primitive; a string's length and an array's count are a uint32."""
 
-COUNT_SIZE = 4
-"""Bytes of a string's length or an array's count."""
-
 
 class Slot(Record):
     """A fixed piece of a run at `offset` bytes from the run's first byte (after its alignment).

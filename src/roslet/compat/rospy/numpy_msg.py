@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy
+import numpy  # noqa: F401 - without numpy this module cannot be imported, as in rospy
 
 from roslet.compat.messages import adapt
-
-NUMPY = numpy.__version__  # without numpy this module cannot be imported, as in rospy
 
 _made: dict[type, type] = {}
 

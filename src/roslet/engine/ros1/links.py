@@ -10,7 +10,6 @@ from roslet.engine.ros1.framing import FrameReceiver, Paused
 from roslet.engine.ros1.queue import SendQueue
 from roslet.errors import HandshakeRefused, ProtocolError, RosletError, ServiceFailed
 from roslet.names import MAX_NAME
-from roslet.record import Names
 from roslet.wire.tcpros import MAX_FRAME, MAX_HEADER, emit_header, parse_header, require
 
 TYPE_CHECKING = False
@@ -31,7 +30,6 @@ CONNECTING = 0
 HANDSHAKE = 1
 OPEN = 2
 CLOSED = 3
-STATE = Names("state", {CONNECTING: "connecting", HANDSHAKE: "handshake", OPEN: "open", CLOSED: "closed"})
 
 # Seconds a peer has for its connection and its header; then the connection is given up.
 HANDSHAKE_TIMEOUT = 10.0

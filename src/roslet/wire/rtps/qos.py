@@ -3,7 +3,7 @@
 Durations are int nanoseconds, INFINITE where endless. Kinds are the numbers of the wire.
 """
 
-from roslet.record import Names, Record
+from roslet.record import Record
 from roslet.wire.rtps import parameter_list as pl
 from roslet.wire.rtps import values
 from roslet.wire.rtps.times import INFINITE
@@ -17,26 +17,6 @@ BY_RECEPTION_TIMESTAMP, BY_SOURCE_TIMESTAMP = 0, 1
 INSTANCE, TOPIC, GROUP = 0, 1, 2
 KEEP_LAST, KEEP_ALL = 0, 1
 XCDR1, XML, XCDR2 = 0, 1, 2
-
-RELIABILITY_NAMES = Names("reliability", {BEST_EFFORT: "BEST_EFFORT", RELIABLE: "RELIABLE"})
-DURABILITY_NAMES = Names(
-    "durability",
-    {
-        VOLATILE: "VOLATILE",
-        TRANSIENT_LOCAL: "TRANSIENT_LOCAL",
-        TRANSIENT: "TRANSIENT",
-        PERSISTENT: "PERSISTENT",
-    },
-)
-LIVELINESS_NAMES = Names(
-    "liveliness",
-    {
-        AUTOMATIC: "AUTOMATIC",
-        MANUAL_BY_PARTICIPANT: "MANUAL_BY_PARTICIPANT",
-        MANUAL_BY_TOPIC: "MANUAL_BY_TOPIC",
-    },
-)
-HISTORY_NAMES = Names("history", {KEEP_LAST: "KEEP_LAST", KEEP_ALL: "KEEP_ALL"})
 
 DEFAULT_BLOCKING = 100000000
 """max_blocking_time of RELIABILITY, nanoseconds."""
