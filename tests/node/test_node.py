@@ -176,6 +176,34 @@ def test_a_namespace_is_told_whole_whoever_changed_it(make: Nodes) -> None:
     wait_until(lambda: seen[2:] == [{"right": {"gain": 3}}], "and that something is gone")
 
 
+def test_a_callback_of_a_parameter_can_be_taken_back(make: Nodes, master: MasterServer) -> None:
+    a, b = make("a"), make("b")
+    first: list[Any] = []
+    second: list[Any] = []
+    b.on_parameter("/p", first.append)
+    b.on_parameter("/p", second.append)
+    b.off_parameter("/p", first.append)
+    b.off_parameter("/p", first.append)
+    b.off_parameter("/never", first.append)
+    a.set_parameter("/p", 1)
+    wait_until(lambda: second == [1], "the other callback is told")
+    b.off_parameter("/p", second.append)
+    b.get_parameter("/p")  # the calls to the master are in order, so it knows
+    a.set_parameter("/p", 2)
+    assert b.on_parameter("/p", first.append) == 2
+    a.set_parameter("/p", 3)
+    wait_until(lambda: first == [3], "set again, it is told again")
+    assert second == [1] and "parameter-not-subscribed" not in b.counters
+
+
+def test_the_node_follows_use_sim_time_on_after_a_callback_of_it(make: Nodes) -> None:
+    a, b = make("a"), make("b")
+    b.on_parameter("/use_sim_time", print)
+    b.off_parameter("/use_sim_time", print)
+    a.set_parameter("/use_sim_time", True)
+    wait_until(lambda: b.clock.simulated, "it still hears of it")
+
+
 def test_callbacks_that_peers_cause_have_a_bound(make: Nodes) -> None:
     from roslet.node import node as module
 

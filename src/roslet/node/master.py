@@ -101,6 +101,24 @@ class MasterApi:
             self._update()
         return future.result(CALL_TIMEOUT)
 
+    def off_parameter(self, name: str, callback: Callable[[Any], object]) -> None:
+        """Undo one `on_parameter` of this callback; without any left, the master is asked to tell no more.
+
+        A change that is already on its way to spin is still told. Nothing happens where the callback was not set.
+        """
+        self._check_open()
+        full = self.resolve(name)
+        with self.reactor.lock:
+            callbacks = self._parameter_callbacks.get(full, [])
+            if callback not in callbacks:
+                return
+            callbacks.remove(callback)
+            if not callbacks:
+                del self._parameter_callbacks[full]
+                if full != "/use_sim_time":  # the node itself follows it
+                    self._engine.unwatch_parameter(full, self.reactor.now())
+                    self._update()
+
     # -- the graph
 
     def call_master(self, method: str, *arguments: Any, timeout: float = CALL_TIMEOUT) -> Any:

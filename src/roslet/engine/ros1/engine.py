@@ -336,6 +336,7 @@ class Engine:
         self.call_master("subscribeParam", [self.name, self.uri, key], answered, now)
 
     def unwatch_parameter(self, key: str, now: float) -> None:
+        """unsubscribeParam; the value that was kept is forgotten."""
         if key in self._watched:
             self._watched.remove(key)
             self.parameters.pop(key, None)
