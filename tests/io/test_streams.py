@@ -119,6 +119,56 @@ def test_closing_waits_for_the_rest_but_not_for_ever(loop: Reactor, monkeypatch:
     assert machine.lost_for == "closed; the peer did not read the rest"
 
 
+class Answering(Machine):
+    """Answers once the peer has said all."""
+
+    answer = b"x" * 4_000_000
+
+    def receive_end(self, now: float) -> None:
+        self.out += self.answer
+        self.closing = True
+
+
+def test_a_peer_that_closes_its_half_still_gets_the_answer(loop: Reactor) -> None:
+    machine, stream, far, told = pair(loop, Answering())
+    turns: list[int] = []
+    ready = stream._ready
+
+    def counting(events: int) -> None:
+        turns.append(events)
+        ready(events)
+
+    with loop.lock:
+        loop.unregister(stream._fd)
+        loop.register(stream._fd, counting, stream._events)
+    far.sendall(b"question")
+    far.shutdown(socket.SHUT_WR)
+    loop.run_until(lambda: stream.unsent, 5, user=False)
+    assert machine.got == b"question" and not stream.closed
+    before = len(turns)
+    loop.run_until(lambda: False, 0.1, user=False)
+    assert len(turns) - before < 5  # the end of the input does not keep the loop busy
+    far.settimeout(5)
+    got = 0
+    while part := far.recv(1 << 16):
+        got += len(part)
+    assert got == len(machine.answer)
+    loop.run_until(lambda: stream.closed, 5, user=False)
+    assert stream.closed and told[-1] is stream and machine.lost_for == "closed"
+    far.close()
+
+
+def test_a_peer_that_closes_its_half_and_does_not_read_is_given_up(
+    loop: Reactor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(streams, "LAST_WORDS", 0.1)
+    machine, stream, far, _ = pair(loop, Answering())
+    far.shutdown(socket.SHUT_WR)
+    loop.run_until(lambda: stream.closed, 5, user=False)
+    assert "did not read" in machine.lost_for
+    far.close()
+
+
 def test_a_slip_in_a_machine_ends_its_connection_and_no_other(loop: Reactor) -> None:
     machine, stream, far, _ = pair(loop)
     other, _, other_far, _ = pair(loop)

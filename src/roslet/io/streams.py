@@ -36,7 +36,8 @@ class Stream:
     A machine with a `queue` (a subscriber of our topic) has a `publication`, whose `lock` publishing threads hold while
     they send. The loop never waits for it: one of them may be blocked by some other subscriber for seconds.
 
-    The machine's face: `receive_data(data, now)` or `writable()` and `received(count, now)`; `data_to_send()`;
+    The machine's face: `receive_data(data, now)` or `writable()` and `received(count, now)`; `receive_end(now)` where it
+    still answers a peer that sends no more; `data_to_send()`;
     `closing` or `wants_close`; `deadline()`, `handle_deadline(now)`; `connected(now)`; `lost(reason, now)` or
     `connection_lost`, if any; `user` where there is one.
     """
@@ -59,6 +60,7 @@ class Stream:
         self.user = False
         self.description = ""
         self.end = ""  # why it was closed
+        self._input_ended = False
         self._rest: bytes | memoryview = b""
         self._timer: Timer | None = None
         self._last_words: Timer | None = None
@@ -137,7 +139,7 @@ class Stream:
                 self.lose(error.strerror or str(error))
             return
         if not count:
-            self.lose("closed by the peer")
+            self._end_input()
             return
         now = self.reactor.now()
         if self._into:
@@ -150,6 +152,19 @@ class Stream:
             self.arm()
             if self._into and self.machine.user and not self.user and not self.closed:
                 self._become_user(self.machine.take_rest())
+
+    def _end_input(self) -> None:
+        """The peer sends no more; it may still read what it asked for."""
+        if self._input_ended or not hasattr(self.machine, "receive_end"):
+            self.lose("closed by the peer")
+            return
+        self._input_ended = True
+        self.machine.receive_end(self.reactor.now())
+        self.after(self)
+        if not self.closed:
+            self._want(0)  # the end is there to be read for ever
+            self.flush()
+            self.arm()
 
     def adopt(self, machine: Any, rest: bytes) -> None:
         """`machine` takes the connection over from the present one, which had `rest` left of the input."""
@@ -331,6 +346,8 @@ class Stream:
         self._want(0 if paused else READ)
 
     def _want(self, events: int) -> None:
+        if self._input_ended:
+            events &= ~READ
         with self._want_lock:
             if events != self._events and not self.closed:
                 self._events = events

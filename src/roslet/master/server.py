@@ -159,7 +159,7 @@ class MasterServer:
         machine: RpcServer = stream.machine
         self._streams.pop(stream, None)
         if stream.closed:
-            if machine.close_reason:
+            if machine.close_reason not in ("", "peer-closed"):
                 self.count(machine.close_reason)
             return
         self._streams[stream] = None

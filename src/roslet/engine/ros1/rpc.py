@@ -170,8 +170,8 @@ class RpcServer:
 
     @property
     def unfinished(self) -> bool:
-        """Whether a request has come in part, and nothing was wrong with it so far."""
-        return not self.close_reason and not self._parser.idle
+        """Whether a request has come in part, and nothing was wrong with it so far but its end."""
+        return self.close_reason in ("", "peer-closed") and not self._parser.idle
 
     def take_refused(self) -> "list[str]":
         """Why requests that have come since the last look were refused, one reason each."""
