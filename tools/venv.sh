@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes .venv with the project (editable) and its development group. A second run with the same pyproject.toml is instant.
+# Makes .venv with the project (editable) and its extra `dev`. A second run with the same pyproject.toml is instant.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -19,11 +19,11 @@ stamp=.venv/roslet-stamp
 echo "venv.sh: making .venv"
 if command -v uv >/dev/null 2>&1; then
     [ -x .venv/bin/python ] || uv venv --quiet --python "$python" .venv
-    uv pip install -qq --python .venv/bin/python --editable . --group dev
+    uv pip install -qq --python .venv/bin/python --editable '.[dev]'
 else
     [ -x .venv/bin/python ] || "$python" -m venv .venv
-    # Dependency groups are read by pip since 25.1, and Debian 12 has 23.0.
+    # pip reads dependency groups, which tools/fuzz.sh asks for, since 25.1; Debian 12 has 23.0.
     .venv/bin/python -m pip install -qq 'pip>=25.1'
-    .venv/bin/python -m pip install -qq --editable . --group dev
+    .venv/bin/python -m pip install -qq --editable '.[dev]'
 fi
 echo "$want" >"$stamp"
