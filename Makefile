@@ -1,7 +1,7 @@
 # Every target makes what it needs; `make test` on a fresh Debian 12 as root needs nothing installed by hand.
 PYTHON := .venv/bin/python
 
-.PHONY: demo test quick lint format types docs bench peers venv clean
+.PHONY: demo test quick lint format types docs bench fuzz peers venv clean
 
 demo: venv ## the whole path in one terminal, about 20 seconds
 	$(PYTHON) -m roslet demo
@@ -29,6 +29,10 @@ docs: venv ## every code block of the README and docs/ is run
 
 bench: venv peers ## ratios against peers and a raw-socket floor
 	tools/bench.sh
+
+FUZZ_SECONDS ?= 30
+fuzz: venv ## coverage-guided, each target for FUZZ_SECONDS, one after another
+	tools/fuzz.sh $(FUZZ_SECONDS)
 
 peers: ## Debian packages, ROS 2 wheels, compiled ROS 1 programs, in a cache outside the tree
 	tools/debian.sh
