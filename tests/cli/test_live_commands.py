@@ -226,6 +226,9 @@ def test_a_signal_ends_a_command_without_traceback_and_its_node_is_unregistered(
 ) -> None:
     process = start("topic", *command.split())
     eventually(lambda: len(run("node", "list", "--names").out.split()) == 2, "the command's node is there")
+    if "/chatter" in command.split():
+        chatter = talker.publisher("chatter", "std_msgs/String")
+        eventually(lambda: chatter.subscriber_count == 1, "the command listens")
     process.send_signal(number)
     _, err = process.communicate(timeout=5)
     assert (process.returncode, err) == (code, "")
