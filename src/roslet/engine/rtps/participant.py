@@ -46,6 +46,7 @@ from roslet.wire.rtps.times import INFINITE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any
 
     from roslet.engine.rtps.events import SampleReceived
@@ -243,9 +244,10 @@ class Participant:
         now: float,
         keyed: bool = False,
         unicast: "tuple[Locator, ...]" = (),
+        accepts: "Callable[[EndpointData], bool] | None" = None,
     ) -> Writer:
         """A writer of a topic, by its names in DDS, announced from now on; `unicast`: where answers to it are to go,
-        the participant's default locators where empty."""
+        the participant's default locators where empty; `accepts` may turn down readers that would match."""
         endpoint = self._endpoint(topic, type_name, qos, b"\x02" if keyed else b"\x03", unicast)
         writer = Writer(
             endpoint,
@@ -256,6 +258,7 @@ class Participant:
             self._epoch,
             self._fragment_size,
         )
+        writer.accepts = accepts
         self.writers[writer.entity_id] = self._all_writers[writer.entity_id] = writer
         self.sedp.announce(endpoint, now)
         for remote in list(self.endpoints.values()):
@@ -455,6 +458,8 @@ class Participant:
 
     def _consider_reader(self, writer: Writer, found: EndpointData, now: float) -> None:
         if found.topic != writer.data.topic or found.type_name != writer.data.type_name:
+            return
+        if writer.accepts is not None and not writer.accepts(found):
             return
         policies = incompatible(writer.qos, found.qos)
         if policies:
