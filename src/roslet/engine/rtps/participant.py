@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 
     from roslet.engine.rtps.events import SampleReceived
     from roslet.engine.rtps.outbox import Address, Datagram
-    from roslet.engine.rtps.reader import WriterProxy
+    from roslet.engine.rtps.reader import Sink, WriterProxy
     from roslet.wire.rtps.locator import Locator
     from roslet.wire.rtps.qos import Qos
 
@@ -236,10 +236,17 @@ class Participant:
     # -- endpoints
 
     def create_writer(
-        self, topic: str, type_name: str, qos: "Qos", now: float, keyed: bool = False
+        self,
+        topic: str,
+        type_name: str,
+        qos: "Qos",
+        now: float,
+        keyed: bool = False,
+        unicast: "tuple[Locator, ...]" = (),
     ) -> Writer:
-        """A writer of a topic, by its names in DDS, announced from now on."""
-        endpoint = self._endpoint(topic, type_name, qos, b"\x02" if keyed else b"\x03")
+        """A writer of a topic, by its names in DDS, announced from now on; `unicast`: where answers to it are to go,
+        the participant's default locators where empty."""
+        endpoint = self._endpoint(topic, type_name, qos, b"\x02" if keyed else b"\x03", unicast)
         writer = Writer(
             endpoint,
             self._header,
@@ -263,12 +270,26 @@ class Participant:
         return writer
 
     def create_reader(
-        self, topic: str, type_name: str, qos: "Qos", now: float, keyed: bool = False
+        self,
+        topic: str,
+        type_name: str,
+        qos: "Qos",
+        now: float,
+        keyed: bool = False,
+        unicast: "tuple[Locator, ...]" = (),
+        sink: "Sink | None" = None,
     ) -> Reader:
-        """A reader of a topic, by its names in DDS, announced from now on."""
-        endpoint = self._endpoint(topic, type_name, qos, b"\x07" if keyed else b"\x04")
+        """A reader of a topic, by its names in DDS, announced from now on; `unicast`: where samples for it are to go,
+        the participant's default locators where empty.
+
+        `sink(proxy, value, time)` is called for each sample within `receive_datagram` or `handle_deadline`, in order,
+        and no SampleReceived is made: the writer's proxy, the DATA (of a fragmented sample the DATA it amounts to), and
+        the source's time in nanoseconds or None. Views in `value` are good until it returns. It may call the
+        participant, but must not raise: an exception would take what follows in the datagram with it.
+        """
+        endpoint = self._endpoint(topic, type_name, qos, b"\x07" if keyed else b"\x04", unicast)
         reader = Reader(
-            endpoint, self._header, self.outbox, self.counters, self.limits, self._budget, self._deliver
+            endpoint, self._header, self.outbox, self.counters, self.limits, self._budget, self._deliver, sink
         )
         self.readers[reader.entity_id] = reader
         self.sedp.announce(endpoint, now)
@@ -305,13 +326,15 @@ class Participant:
         """Say that our MANUAL_BY_PARTICIPANT writers are alive."""
         self._send_liveliness(KIND_MANUAL_LIVELINESS_UPDATE, now)
 
-    def _endpoint(self, topic: str, type_name: str, qos: "Qos", kind: bytes) -> EndpointData:
+    def _endpoint(
+        self, topic: str, type_name: str, qos: "Qos", kind: bytes, unicast: "tuple[Locator, ...]"
+    ) -> EndpointData:
         self._serial += 1
         number = self._serial
         entity_id = bytes((number >> 16 & 255, number >> 8 & 255, number & 255)) + kind
         own = self.guid_prefix
         return EndpointData(
-            own + entity_id, topic, type_name, qos, participant_guid=own + guid.ENTITYID_PARTICIPANT
+            own + entity_id, topic, type_name, qos, unicast, participant_guid=own + guid.ENTITYID_PARTICIPANT
         )
 
     def _send_liveliness(self, kind: bytes, now: float) -> None:
@@ -423,7 +446,7 @@ class Participant:
 
     def _addresses(self, found: EndpointData) -> "tuple[Address, ...]":
         if found.guid[:12] == self.guid_prefix:
-            return self._own_addresses
+            return addresses_of(found.unicast, "")[:1] or self._own_addresses
         remote = self.spdp.remotes.get(found.guid[:12])
         if remote is None:
             return ()
