@@ -7,6 +7,10 @@ DDS" and "ROS Command Line Arguments", and what rcl accepts. Runs on MicroPython
 from roslet.errors import InvalidName, Unsupported
 from roslet.record import Record
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
 _LETTERS = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
 _DIGITS = "0123456789"
 _FIRST = _LETTERS + "~/"
@@ -507,8 +511,8 @@ class Ros2Network(Record):
     domain_id    0 to 232
     interfaces   names or IPv4 addresses of the interfaces to use; empty: all
     peers        (host, port) that are looked for besides; port None: the ports of participants 0 to 31 of that host
-    range        OFF: nobody is looked for, and nobody taken; LOCALHOST: participants of this host, and static peers of either
-                 side; SUBNET: whatever multicast reaches, and peers; SYSTEM_DEFAULT: as SUBNET, without peers
+    range        OFF: nobody is looked for, and nobody taken; LOCALHOST: participants of this host, and static peers of
+                 either side; SUBNET: whatever multicast reaches, and peers; SYSTEM_DEFAULT: as SUBNET, without peers
     """
 
     _fields = ("domain_id", "interfaces", "peers", "range")
@@ -519,7 +523,7 @@ class Ros2Network(Record):
         domain_id: int = 0,
         interfaces: "tuple[str, ...]" = (),
         peers: "tuple[tuple[str, int | None], ...]" = (),
-        range: str = SUBNET,
+        range: str = SUBNET,  # noqa: A002 - the field's name
     ) -> None:
         self.domain_id = domain_id
         self.interfaces = interfaces
@@ -538,7 +542,7 @@ class Ros2Network(Record):
         return "ros2://%d%s%s" % (self.domain_id, "?" if options else "", "&".join(options))
 
 
-def parse_ros2_network(network: "str | None", environment: "dict[str, str]") -> Ros2Network:
+def parse_ros2_network(network: "str | None", environment: "Mapping[str, str]") -> Ros2Network:
     """The network of "ros2://42?interface=eth0&peers=10.0.0.7,robot:7412&range=localhost"; every part may be missing.
 
     What the URL leaves open the environment says: ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE. ROS_STATIC_PEERS adds to
@@ -582,10 +586,8 @@ def parse_ros2_network(network: "str | None", environment: "dict[str, str]") -> 
     if not reach:
         said = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "") or SUBNET
         reach = LOCALHOST if only_local else _range(said, "ROS_AUTOMATIC_DISCOVERY_RANGE")
-    if domain:
-        number = _domain(domain, text)
-    else:
-        number = _domain(environment.get("ROS_DOMAIN_ID", "") or "0", "ROS_DOMAIN_ID")
+    said = environment.get("ROS_DOMAIN_ID", "") or "0"
+    number = _domain(domain, text) if domain else _domain(said, "ROS_DOMAIN_ID")
     if len(peers) > MAX_PEERS:
         raise InvalidName("%d static peers; at most %d are taken" % (len(peers), MAX_PEERS))
     distinct: list[tuple[str, int | None]] = []

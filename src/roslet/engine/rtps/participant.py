@@ -10,9 +10,10 @@ from roslet.engine.rtps.limits import Limits
 from roslet.engine.rtps.liveliness import Liveliness
 from roslet.engine.rtps.outbox import Outbox
 from roslet.engine.rtps.qos import incompatible
+from roslet.engine.rtps.reach import addresses_of
 from roslet.engine.rtps.reader import Reader
 from roslet.engine.rtps.sedp import Sedp
-from roslet.engine.rtps.spdp import RemoteParticipant, Spdp, addresses_of
+from roslet.engine.rtps.spdp import RemoteParticipant, Spdp
 from roslet.engine.rtps.writer import FRAGMENT_SIZE, Writer
 from roslet.errors import ProtocolError
 from roslet.wire.rtps import (
@@ -51,8 +52,10 @@ if TYPE_CHECKING:
 
     from roslet.engine.rtps.events import SampleReceived
     from roslet.engine.rtps.outbox import Address, Datagram
+    from roslet.engine.rtps.reach import Network
     from roslet.engine.rtps.reader import Sink, WriterProxy
     from roslet.wire.rtps.locator import Locator
+    from roslet.wire.rtps.participant_data import ParticipantData
     from roslet.wire.rtps.qos import Qos
 
 DEFAULT_LEASE = 20.0
@@ -67,6 +70,8 @@ class Participant:
     metatraffic, default   locators at which discovery and samples reach us
     announce_to     addresses of announcements: the multicast group, static peers
     epoch           nanoseconds of the Unix epoch when `now` is 0
+    multicast       the group's locator where we listen to it
+    networks        our interfaces' addresses and the length of their networks' prefixes; empty where they are not known
     """
 
     def __init__(
@@ -84,6 +89,8 @@ class Participant:
         fragment_size: int = FRAGMENT_SIZE,
         match_own: bool = True,
         limits: "Limits | None" = None,
+        multicast: "tuple[Locator, ...]" = (),
+        networks: "tuple[Network, ...]" = (),
     ) -> None:
         if len(guid_prefix) != 12:
             raise ValueError("a GUID prefix has 12 octets, not %d" % len(guid_prefix))
@@ -104,11 +111,13 @@ class Participant:
         self._assert_at: float | None = None
         self._closed = False
         self._match_own = match_own
+        self._networks = networks
         self._own_addresses = addresses_of(default, "")[:1]
         own = participant_data.own(
             self.guid_prefix,
             domain_id=domain_id,
             metatraffic_unicast=metatraffic,
+            metatraffic_multicast=multicast,
             default_unicast=default,
             lease=int(lease * 1000000000),
             user_data=user_data,
@@ -125,6 +134,7 @@ class Participant:
             self._participant_discovered,
             self._participant_lost,
             self._count,
+            networks,
         )
         self.sedp = Sedp(
             self.guid_prefix,
@@ -227,6 +237,18 @@ class Participant:
         if self._assert_at is not None and now >= self._assert_at:
             self._send_liveliness(KIND_AUTOMATIC_LIVELINESS_UPDATE, now)
             self._assert_at = now + self._liveliness_period()
+
+    def move(
+        self, own: "ParticipantData", to: "tuple[Address, ...]", networks: "tuple[Network, ...]", now: float
+    ) -> None:
+        """Our interfaces have changed: from now on the locators of `own` hold, announcements go `to` these addresses, and
+        peers are told. `own` is `spdp.own` with some of its locators replaced."""
+        self._networks = networks
+        self._own_addresses = addresses_of(own.default_unicast, "")[:1]
+        self.spdp.move(own, to, networks, now)
+        if self._match_own:
+            for one in list(self.writers.values()) + list(self.readers.values()):
+                self._endpoint_discovered(one.data, now)
 
     def close(self, now: float) -> None:
         """Depart: the datagrams that say so are the last ones to send."""
@@ -453,7 +475,7 @@ class Participant:
         remote = self.spdp.remotes.get(found.guid[:12])
         if remote is None:
             return ()
-        own = addresses_of(found.unicast or found.multicast, remote.host)
+        own = addresses_of(found.unicast or found.multicast, remote.host, self._networks)
         return own or remote.default
 
     def _consider_reader(self, writer: Writer, found: EndpointData, now: float) -> None:
