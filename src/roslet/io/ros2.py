@@ -14,20 +14,19 @@ if TYPE_CHECKING:
     from roslet.io.select import Reactor, Timer
     from roslet.names import Ros2Network
 
-_shells: dict[tuple[int, str, str], Ros2Shell] = {}
-
 
 class Ros2Shell:
-    """Sockets, participant and context. Get one by `acquire`, and `release` it; the last one to do so closes it.
+    """Sockets, participant and context. Methods are to be called with the reactor's lock held, but for the last two.
 
-    Every method is to be called with the reactor's lock held, but for these two.
+    `warn` hears what goes wrong behind the scenes. Raises Unreachable.
     """
 
-    def __init__(self, reactor: Reactor, network: Ros2Network, enclave: str, warn: Callable[[str], None]) -> None:
+    def __init__(
+        self, reactor: Reactor, network: Ros2Network, enclave: str, warn: Callable[[str], None]
+    ) -> None:
         self.reactor = reactor
         self.network = network
         self.enclave = enclave
-        self.users = 0
         self._handlers: dict[bytes, Callable[[Any], None]] = {}
         self._timer: Timer | None = None
         self._armed = 0.0
@@ -85,7 +84,8 @@ class Ros2Shell:
             self.context.handle_deadline(self.reactor.now())
             self.flush()
 
-    def _close(self) -> None:
+    def close(self) -> None:
+        """Say that the nodes are gone, and depart. Closing twice is allowed."""
         self._closed = True
         with self.reactor.lock:
             self.context.close(self.reactor.now())
@@ -93,31 +93,7 @@ class Ros2Shell:
                 self._timer.cancel()
         self.domain.close()
 
-
-def acquire(reactor: Reactor, network: Ros2Network, enclave: str, warn: Callable[[str], None]) -> Ros2Shell:
-    """The process's shell of this network and enclave, made where there is none. `warn` hears what goes wrong behind the
-    scenes of a new one. Raises Unreachable."""
-    key = (id(reactor), network.url, enclave)
-    with reactor.lock:
-        shell = _shells.get(key)
-        if shell is None:
-            shell = _shells[key] = Ros2Shell(reactor, network, enclave, warn)
-        shell.users += 1
-        return shell
-
-
-def release(shell: Ros2Shell) -> None:
-    """Undo one `acquire`."""
-    with shell.reactor.lock:
-        shell.users -= 1
-        if shell.users:
-            return
-        _shells.pop((id(shell.reactor), shell.network.url, shell.enclave), None)
-    shell._close()
-
-
-def abandon(shell: Ros2Shell) -> None:
-    """In a forked child: give back the parent's sockets, and say nothing to anybody."""
-    _shells.pop((id(shell.reactor), shell.network.url, shell.enclave), None)
-    shell._closed = True
-    shell.domain.abandon()
+    def abandon(self) -> None:
+        """In a forked child: give back the parent's sockets, and say nothing to anybody."""
+        self._closed = True
+        self.domain.abandon()

@@ -1,11 +1,11 @@
 """What happens to a publisher or subscription on ROS 2, apart from messages: facts that `on_event` tells.
 
-    Matched, Unmatched       a peer that it exchanges messages with has come, or gone
-    QosIncompatible          a peer of the topic that it does not: policies names why
-    DeadlineMissed           nothing was published, or came, within the deadline
-    LivelinessLost           a publisher was silent for longer than its lease
-    LivelinessRegained       it has been heard again
-    MessagesLost             messages of a publisher that will never come
+Matched, Unmatched       a peer that it exchanges messages with has come, or gone
+QosIncompatible          a peer of the topic that it does not: policies names why
+DeadlineMissed           nothing was published, or came, within the deadline
+LivelinessLost           a publisher was silent for longer than its lease
+LivelinessRegained       it has been heard again
+MessagesLost             messages of a publisher that will never come
 """
 
 from __future__ import annotations

@@ -59,6 +59,10 @@ class Network:
         """The full name that `name` has for this node, remappings applied. Raises InvalidName."""
         raise NotImplementedError
 
+    def resolve_service(self, name: str) -> str:
+        """The same for a service's name, where that makes a difference."""
+        return self.resolve(name)
+
     @property
     def counters(self) -> dict[str, int]:
         """What was dropped or refused, by its named reason."""

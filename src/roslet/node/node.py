@@ -124,12 +124,12 @@ class Node(GraphApi):
     def service(self, name: str, type: Any, handler: Callable[[Any], Any]) -> Service:  # noqa: A002
         """Offer the service `name`; see `Service` for the handler."""
         self._check_open()
-        return self._network.service(self.resolve(name), type, handler)
+        return self._network.service(self._network.resolve_service(name), type, handler)
 
     def client(self, name: str, type: Any, *, persistent: bool = False) -> Client:  # noqa: A002
         """A client of the service `name`, which need not be there yet. `persistent`: on ROS 1, keep the connection."""
         self._check_open()
-        return self._network.client(self.resolve(name), type, persistent)
+        return self._network.client(self._network.resolve_service(name), type, persistent)
 
     # -- time
 

@@ -13,7 +13,7 @@ class QoS:
 
     depth             most messages kept for one slow subscriber (`keep_last`); the oldest is dropped and counted
     reliability       "reliable", or "best_effort": ROS 1 subscribes it over UDPROS
-    durability        "volatile", or "transient_local": a late subscriber gets the last messages (ROS 1: the last one, latched)
+    durability        "volatile", or "transient_local": a late subscriber gets the last ones (ROS 1: the last one, latched)
     history           "keep_last", or "keep_all": publishing waits for a slow subscriber instead of dropping
 
     On ROS 2 only; seconds, None where there is no bound:

@@ -129,6 +129,7 @@ class Ros1Network(MasterApi, Network):
 
     def publisher(self, topic: str, message_type: Any, qos: QoS) -> Ros1Publisher:
         message_type = own_classes("ros1", message_type)
+        self._check(qos)
         known = self._publishers.get(topic)
         if known is not None:
             if known.type is not message_type:
@@ -150,6 +151,7 @@ class Ros1Network(MasterApi, Network):
         max_message: int,
         with_link: bool,
     ) -> Ros1Subscription:
+        self._check(qos)
         kind = None if message_type in (None, "*") else own_classes("ros1", message_type)
         subscription = Ros1Subscription(self, self.node, topic, kind, callback, qos, max_message, with_link)
         self._subscriptions.append(subscription)
@@ -158,6 +160,10 @@ class Ros1Network(MasterApi, Network):
             self._pair(own, subscription)
         self.settle()
         return subscription
+
+    def _check(self, qos: QoS) -> None:
+        if qos.of_ros2:
+            self.lacks(f"QoS {', '.join(qos.of_ros2)}")
 
     def _pair(self, publisher: Ros1Publisher, subscription: Ros1Subscription) -> None:
         if publisher.topic == subscription.topic and subscription._publisher is None:
