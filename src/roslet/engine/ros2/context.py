@@ -73,6 +73,7 @@ class Context:
         self.enclave = enclave
         self.graph = Graph()
         self.counters = participant.counters
+        self.unique = 0  # for ids of servers and clients
         self._max_nodes = max_nodes
         self._max_endpoints = max_endpoints
         self._batch = batch
@@ -273,7 +274,8 @@ class Context:
 
     def _info(self) -> ParticipantEntities:
         nodes = []
-        for node in self._nodes.values():
+        for handle in sorted(self._nodes):
+            node = self._nodes[handle]
             nodes.append(NodeEntities(node.namespace, node.name, tuple(node.readers), tuple(node.writers)))
         return ParticipantEntities(self.participant.guid_prefix + ENTITYID_PARTICIPANT, tuple(nodes))
 
