@@ -69,7 +69,8 @@ class RemoteParticipant:
 
 
 class Spdp:
-    """Announces us, and keeps the table of who is there. `discovered` and `lost` are called before the events go out."""
+    """Announces us, and keeps the table of who is there. `discovered` and `lost` are called before the events go out;
+    `answered` says whether a participant has ever shown that it knows us."""
 
     def __init__(
         self,
@@ -82,6 +83,7 @@ class Spdp:
         deliver: "Callable[[Any], None]",
         discovered: "Callable[[RemoteParticipant, float], None]",
         lost: "Callable[[RemoteParticipant], None]",
+        answered: "Callable[[bytes], bool]",
         count: "Callable[[str], None]",
     ) -> None:
         self.remotes: dict[bytes, RemoteParticipant] = {}
@@ -94,6 +96,7 @@ class Spdp:
         self._deliver = deliver
         self._discovered = discovered
         self._lost = lost
+        self._answered = answered
         self._count = count
         self._header = header.own(own.guid_prefix)
         self._payload = own.emit()
@@ -179,6 +182,9 @@ class Spdp:
                 remote.update(found, host)
                 self._discovered(remote, now)
                 self._deliver(ParticipantDiscovered(found))
+            if not self._answered(prefix):
+                # Our greeting was lost, or it lost us; its next chance would be our next announcement.
+                self._outbox.send(self._announcement(now, prefix), remote.metatraffic)
         self._expire_at = min(self._expire_at or now, now)
 
     def _step(self, prefix: bytes, event: str) -> None:
