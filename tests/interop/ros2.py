@@ -22,7 +22,7 @@ def ours(namespace: Namespace, *words: str) -> Program:
 
 def theirs(namespace: Namespace, peer: str, role: str, count: int) -> Program:
     """A peer that serves or calls /ask."""
-    program = "cyclone_service.py" if peer == "cyclone" else "rclpy_rtps.py"
+    program = "cyclone_rmw.py" if peer == "cyclone" else "rclpy_rtps.py"
     return namespace.start(
         str(peers.require(peer)), str(PROGRAMS / program), role, str(count), name=f"{peer}_{role}"
     )

@@ -17,6 +17,8 @@ import threading
 from collections import deque
 from time import monotonic, sleep
 
+from roslet.io import interrupts
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -479,6 +481,7 @@ def reactor() -> Reactor:
     with _reactor_lock:
         if _reactor is None:
             _reactor = Reactor()
+        interrupts.watch(_reactor.lock)
         return _reactor
 
 

@@ -1,7 +1,7 @@
-"""The service dialect of rmw_cyclonedds, spoken by cyclonedds. cyclone_service.py ROLE COUNT: server or client of /ask.
+"""A service as rmw_cyclonedds has it, of plain CycloneDDS peers. cyclone_service.py ROLE COUNT; ROLE is server or client.
 
-A 16-byte header (client, number) in front of each body; `serviceid=` or `clientid=` in USER_DATA. Prints one line a fact:
-`ready`, `asked yes`, `answer yes`, `foreign` for a reply to somebody else. Ends by itself after COUNT facts, or 30 seconds.
+The request and the reply begin with 16 octets: who asks, and the number of the request. /ask is of std_srvs/srv/SetBool.
+Prints one line a fact: `ready`, `answer SUCCESS TEXT`. Ends by itself after COUNT facts, or 30 seconds.
 """
 
 import sys
@@ -17,8 +17,6 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-CLIENT = 0x0123456789ABCDEF
-
 
 @dataclass
 class Request(IdlStruct, typename="std_srvs::srv::dds_::SetBool_Request_"):
@@ -28,7 +26,7 @@ class Request(IdlStruct, typename="std_srvs::srv::dds_::SetBool_Request_"):
 
 
 @dataclass
-class Response(IdlStruct, typename="std_srvs::srv::dds_::SetBool_Response_"):
+class Reply(IdlStruct, typename="std_srvs::srv::dds_::SetBool_Response_"):
     client: uint64
     number: int64
     success: bool
@@ -41,49 +39,38 @@ def say(*words):
 
 def main():
     role, count = sys.argv[1], int(sys.argv[2])
-    key = "serviceid" if role == "server" else "clientid"
-    qos = Qos(
-        Policy.Reliability.Reliable(duration(seconds=1)),
-        Policy.Durability.Volatile,
-        Policy.History.KeepLast(10),
-        Policy.Userdata((key + "= 1.2.3.4.5.6.7.8.9.a.b.c.d.e.f.10;").encode()),
-    )
+    qos = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(10))
     participant = DomainParticipant(0)
-    asks = Topic(participant, "rq/askRequest", Request)
-    answers = Topic(participant, "rr/askReply", Response)
-    done = 0
+    requests = Topic(participant, "rq/askRequest", Request)
+    replies = Topic(participant, "rr/askReply", Reply)
     ends = time.monotonic() + 30.0
     if role == "server":
-        reader, writer = DataReader(participant, asks, qos=qos), DataWriter(participant, answers, qos=qos)
+        reader = DataReader(participant, requests, qos=qos)
+        writer = DataWriter(participant, replies, qos=qos)
         say("ready")
+        done = 0
         while done < count and time.monotonic() < ends:
-            for sample in reader.take(10):
-                if getattr(sample, "data", None) is not None:
+            for one in reader.take(10):
+                if getattr(one, "number", None) is not None:
+                    writer.write(Reply(one.client, one.number, one.data, "yes" if one.data else "no"))
                     done += 1
-                    say("asked", "yes" if sample.data else "no")
-                    text = "yes" if sample.data else "no"
-                    writer.write(Response(sample.client, sample.number, sample.data, text))
-            time.sleep(0.005)
+            time.sleep(0.01)
         time.sleep(0.5)
-    else:
-        writer, reader = DataWriter(participant, asks, qos=qos), DataReader(participant, answers, qos=qos)
-        while not (writer.get_matched_subscriptions() and reader.get_matched_publications()):
-            time.sleep(0.02)
-        say("ready")
-        sent = 0
-        while done < count and time.monotonic() < ends:
-            if sent == done:
-                writer.write(Request(CLIENT, 1000 + sent, sent % 2 == 0))
-                sent += 1
-            for sample in reader.take(10):
-                if getattr(sample, "message", None) is None:
-                    continue
-                if (sample.client, sample.number) == (CLIENT, 1000 + done):
-                    done += 1
-                    say("answer", sample.message)
-                else:
-                    say("foreign")
-            time.sleep(0.005)
+        return
+    writer = DataWriter(participant, requests, qos=qos)
+    reader = DataReader(participant, replies, qos=qos)
+    say("ready")
+    while not writer.get_matched_subscriptions() and time.monotonic() < ends:
+        time.sleep(0.02)
+    time.sleep(0.3)
+    for number in range(1, count + 1):
+        writer.write(Request(0x1122334455667788, number, number % 2 == 1))
+        while time.monotonic() < ends:
+            found = [one for one in reader.take(10) if getattr(one, "number", None) == number]
+            if found:
+                say("answer", found[0].success, found[0].message)
+                break
+            time.sleep(0.01)
 
 
 main()

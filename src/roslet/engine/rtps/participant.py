@@ -133,6 +133,7 @@ class Participant:
             self._deliver,
             self._participant_discovered,
             self._participant_lost,
+            self._answered,
             self._count,
             networks,
         )
@@ -382,6 +383,9 @@ class Participant:
         for endpoint in list(self.endpoints.values()):
             if endpoint.guid[:12] == remote.data.guid_prefix:
                 self._endpoint_discovered(endpoint, now)
+
+    def _answered(self, prefix: bytes) -> bool:
+        return self.sedp.answered(prefix)
 
     def _participant_lost(self, remote: RemoteParticipant) -> None:
         prefix = remote.data.guid_prefix

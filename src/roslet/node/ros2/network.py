@@ -12,6 +12,7 @@ from roslet.names import REQUEST, TOPIC, Ros2Arguments, dds_topic, dds_type, par
 from roslet.node.network import Network, own_classes
 from roslet.node.ros2 import qos as presets
 from roslet.node.ros2.process import join
+from roslet.node.ros2.services import Ros2Client, Ros2Service
 from roslet.node.ros2.topics import Ros2Publisher, Ros2Subscription, pair, unpair
 
 TYPE_CHECKING = False
@@ -59,17 +60,19 @@ class Ros2Network(Network):
         self.name = f"{'' if self.namespace == '/' else self.namespace}/{self.base_name}"
         self._settings = parse_ros2_network(url, dict(environment))
         self.url = self._settings.url
-        self._handle = 0
+        self.handle = 0
         self._counting = threading.Lock()
         self._counters: dict[str, int] = {}
         self._publishers: list[Ros2Publisher] = []
         self._subscriptions: list[Ros2Subscription] = []
+        self.services_made: list[Ros2Service] = []
+        self.clients: list[Ros2Client] = []
 
     def open(self) -> None:
         self.process = join(self.reactor, self._settings, self.arguments.enclave or "/", self.node._note)
         shell = self.shell
         with self.reactor.lock:
-            self._handle = shell.context.add_node(self.base_name, self.namespace, self.reactor.now())
+            self.handle = shell.context.add_node(self.base_name, self.namespace, self.reactor.now())
             shell.flush()
 
     @property
@@ -96,10 +99,14 @@ class Ros2Network(Network):
             publisher.close()
         for subscription in list(self._subscriptions):
             subscription.close()
+        for service in list(self.services_made):
+            service.close()
+        for client in list(self.clients):
+            client.close()
         shell = self.shell
         with self.reactor.lock:
             now = self.reactor.now()
-            shell.context.remove_node(self._handle, now)
+            shell.context.remove_node(self.handle, now)
             shell.context.flush(now)
             shell.flush()
         self.process.leave()
@@ -189,7 +196,7 @@ class Ros2Network(Network):
         kind = publisher.type
         with self.reactor.lock:
             writer = self.shell.context.create_writer(
-                self._handle,
+                self.handle,
                 dds_topic(TOPIC, publisher.topic),
                 dds_type(kind._type),
                 publisher._policies,
@@ -204,7 +211,7 @@ class Ros2Network(Network):
         kind = subscription.type
         with self.reactor.lock:
             reader = self.shell.context.create_reader(
-                self._handle,
+                self.handle,
                 dds_topic(TOPIC, subscription.topic),
                 dds_type(subscription.type_name),
                 subscription._policies,
@@ -223,7 +230,7 @@ class Ros2Network(Network):
             self.process.publishers[publisher.topic].remove(publisher)
             for subscription in self.process.subscriptions.get(publisher.topic, ()):
                 unpair(publisher, subscription)
-            self.shell.context.delete_writer(self._handle, writer, self.reactor.now())
+            self.shell.context.delete_writer(self.handle, writer, self.reactor.now())
             self.shell.handle(writer.entity_id, None)
             self.shell.flush()
 
@@ -234,9 +241,31 @@ class Ros2Network(Network):
             self.process.subscriptions[subscription.topic].remove(subscription)
             for publisher in self.process.publishers.get(subscription.topic, ()):
                 unpair(publisher, subscription)
-            self.shell.context.delete_reader(self._handle, reader, self.reactor.now())
+            self.shell.context.delete_reader(self.handle, reader, self.reactor.now())
             self.shell.handle(reader.entity_id, None)
             self.shell.flush()
+
+    # -- services
+
+    def service(
+        self,
+        name: str,
+        service_type: Any,
+        handler: Callable[[Any], Any],
+        qos: QoS = presets.SERVICES,
+        background: bool = False,
+    ) -> Ros2Service:
+        kind = own_classes("ros2", service_type, services=True)
+        service = Ros2Service(self, self.node, name, kind, handler, qos, background)
+        self.services_made.append(service)
+        return service
+
+    def client(
+        self, name: str, service_type: Any, persistent: bool = False, qos: QoS = presets.SERVICES
+    ) -> Ros2Client:
+        client = Ros2Client(self, self.node, name, own_classes("ros2", service_type, services=True), qos)
+        self.clients.append(client)
+        return client
 
     # -- the graph
 
