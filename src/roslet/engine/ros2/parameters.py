@@ -99,7 +99,7 @@ def type_of(value: "Any") -> int:
         try:
             found = _of_elements(value)
         except TypeError:
-            pass  # not iterable
+            found = None  # not iterable
     if found is None:
         raise TypeError("no parameter can have the value %r" % (value,))
     return found
