@@ -166,7 +166,11 @@ class Matching:
         remote = self._remotes.get(prefix)
         if remote is None:
             return ()
-        return addresses_of(found.unicast or found.multicast, remote.host) or remote.default
+        return (
+            addresses_of(found.unicast, remote.host)
+            or remote.default
+            or addresses_of(found.multicast, remote.host)
+        )
 
     def _vendor(self, found: "EndpointData") -> bytes:
         remote = self._remotes.get(found.guid[:12])
