@@ -10,10 +10,12 @@ import os
 import socket
 import struct
 import time
+from time import monotonic
 
 from roslet.engine.rtps.participant import Participant
 from roslet.engine.rtps.writer import HEARTBEAT_DELAY
 from roslet.errors import Unreachable
+from roslet.io.memory import keep_large_blocks
 from roslet.wire.rtps import locator
 from roslet.wire.rtps.guid import VENDORID_ROSLET
 
@@ -33,8 +35,12 @@ MAX_PARTICIPANT_ID = 119
 UNICAST_IDS = 10
 # Octets of the kernel's receive buffer; it grants less where net.core.rmem_max says so.
 RECEIVE_BUFFER = 4 << 20
+# Addresses of which it is remembered how they are reached.
+MAX_WAYS = 4096
 # Datagrams read in one go before others get their turn.
 BATCH = 64
+# Octets of a datagram that is likely a part of a large message: their memory is worth keeping.
+LARGE = 32 << 10
 _SIOCGIFADDR = 0x8915  # linux/sockios.h
 
 
@@ -100,6 +106,7 @@ class Domain:
         self.participant_id, self._meta, self._user = self._bind(domain_id)
         self._group = self._join()
         self._senders = self._multicast_senders()
+        self._ways: dict[Address, Sequence[socket.socket]] = {}
         group = (GROUP, locator.metatraffic_multicast_port(domain_id))
         announce_to: list[Address] = [group] if self._senders and self._group is not None else []
         for peer in peers:
@@ -198,11 +205,17 @@ class Domain:
     def _reader_of(self, one: socket.socket) -> Callable[[int], None]:
         receive = one.recvfrom_into
         buffer, view = self._buffer, self._view
+        # How many are read before the loop looks again: one by one while they come one by one, for a look in vain costs as
+        # much as reading; more while they come faster.
+        batch = 1
 
         def readable(_: int) -> None:
+            nonlocal batch
             participant = self.participant
-            now = self.reactor.now()
-            for _ in range(BATCH):
+            take = participant.receive_datagram
+            now = monotonic()
+            count = 0
+            while count < batch:
                 try:
                     size, source = receive(buffer)
                 except BlockingIOError:
@@ -210,11 +223,17 @@ class Domain:
                 except OSError as error:
                     # An ICMP error for something sent earlier; the socket goes on.
                     self._failed("receive", error)
-                    continue
-                participant.receive_datagram(view[:size], source, now)
-                self._tell()
-                if self._closed:
-                    return
+                    size = 0
+                count += 1
+                if size:
+                    take(view[:size], source, now)
+                    if participant.pending_events:
+                        self._tell()
+                    if self._closed:
+                        return
+                    if size >= LARGE:
+                        keep_large_blocks()
+            batch = min(2 * batch, BATCH) if count == batch else max(count, 1)
             self.flush()
 
         return readable
@@ -227,12 +246,13 @@ class Domain:
         """Do what is due, send what is pending, and wake up in time for the rest. Call it with the reactor's lock held."""
         if self._closed:
             return
-        now = self.reactor.now()
+        now = monotonic()
         participant = self.participant
         participant.handle_deadline(now)
         for parts, addresses in participant.datagrams_to_send(now):
             self._send(parts, addresses)
-        self._tell()
+        if participant.pending_events:
+            self._tell()
         at = participant.deadline()
         if at is None:
             return
@@ -249,9 +269,10 @@ class Domain:
         if self._timer is None or self._armed > now + HEARTBEAT_DELAY or self._closed:
             self.flush()
             return
-        for parts, addresses in self.participant.datagrams_to_send(now):
+        outbox = self.participant.outbox
+        for parts, addresses in outbox.take(now):
             self._send(parts, addresses)
-        if self.participant.outbox.deadline() is not None:
+        if outbox.deadline() is not None:
             self.flush()
 
     def _due(self) -> None:
@@ -260,13 +281,24 @@ class Domain:
 
     def _send(self, parts: Any, addresses: Sequence[Address]) -> None:
         for address in addresses:
-            senders = self._senders if address[0] == GROUP else [self._user]
+            senders = self._ways.get(address) or self._way(address)
             for sender in senders:
                 try:
-                    sender.sendmsg(parts, [], 0, address)
+                    if len(parts) == 1:
+                        sender.sendto(parts[0], address)
+                    else:
+                        sender.sendmsg(parts, [], 0, address)
                 except OSError as error:
                     # As good as lost on the way; reliable writers send it again.
                     self._failed("send", error)
+
+    def _way(self, address: Address) -> Sequence[socket.socket]:
+        """The sockets that reach an address: the user socket, or one for each interface where it is a group."""
+        if len(self._ways) >= MAX_WAYS:
+            self._ways.clear()
+        first = int(address[0].partition(".")[0])
+        self._ways[address] = found = self._senders if 224 <= first < 240 else (self._user,)
+        return found
 
     def close(self) -> None:
         """Depart and close the sockets."""

@@ -95,7 +95,7 @@ def test_a_reader_takes_no_more_instances_than_its_limit_until_one_ends() -> Non
         network = Network()
         one, other = network.host(), network.host(limits=limits)
         writer = one.participant.create_writer("t", "T", KEEP_ALL, 0.0, keyed=True)
-        reader = other.participant.create_reader("t", "T", policies, 0.0, keyed=True)
+        reader: Any = other.participant.create_reader("t", "T", policies, 0.0, keyed=True)
         assert matched(network, writer, reader)
         network.run(1)
         for instance in (1, 2, 3):
