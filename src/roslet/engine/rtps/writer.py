@@ -158,9 +158,10 @@ class Writer:
         self.last = sequence
         if self._period is not None:
             self._note_deadline(key, flags, now)
-        if self._wrote is not None:
-            self._wrote(now)
+        if self.manual:
             self._assert(now)
+            if self._wrote is not None:
+                self._wrote(now)
         if not self._addresses:
             return sequence
         if to or self._directed:
