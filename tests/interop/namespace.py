@@ -92,6 +92,13 @@ class Namespace:
         assert done.returncode == 0, f"{command}: {done.stderr}"
         return done.stdout
 
+    def wait_for_link(self, name: str) -> None:
+        """Until an interface has a carrier: the kernel takes a moment, and Fast DDS looks only once."""
+        end = time.monotonic() + 10.0
+        while "state UP" not in self.run(f"ip -o link show dev {name}"):
+            assert time.monotonic() < end, f"{name} did not come up"
+            time.sleep(0.02)
+
     def start(self, *command: str, name: str = "", **environment: str) -> Program:
         values = {key: value for key, value in os.environ.items() if not key.startswith("ROS_")}
         values.update(FASTDDS_BUILTIN_TRANSPORTS="UDPv4", ROS_DOMAIN_ID="0")
@@ -123,7 +130,9 @@ def connect(one: Namespace, other: Namespace, cable: str, subnet: str) -> None:
         pytest.skip("only root can lay a cable between two network namespaces")
     one.run(f"ip link add name {cable} type veth peer name {cable} netns {other.pid}")
     for end, number in ((one, 1), (other, 2)):
-        end.run(f"ip address add {subnet}.{number}/24 dev {cable} && ip link set {cable} up")
+        end.run(f"ip address add {subnet}.{number}/24 dev {cable} && ip link set dev {cable} up")
+    for end in (one, other):
+        end.wait_for_link(cable)
 
 
 def route(left: Namespace, router: Namespace, right: Namespace) -> None:
