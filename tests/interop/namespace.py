@@ -9,6 +9,7 @@ import os
 import pathlib
 import signal
 import subprocess
+import sys
 import time
 from types import TracebackType
 
@@ -124,11 +125,16 @@ class Namespace:
         self._holder.communicate(timeout=5)
 
 
-def connect(one: Namespace, other: Namespace, cable: str, subnet: str) -> None:
-    """A cable of that name between two namespaces: addresses .1 and .2 of a subnet such as "10.0.1"."""
+def lay(one: Namespace, other: Namespace, cable: str) -> None:
+    """A cable of that name between two namespaces, without addresses and not up."""
     if os.geteuid() != 0:
         pytest.skip("only root can lay a cable between two network namespaces")
     one.run(f"ip link add name {cable} type veth peer name {cable} netns {other.pid}")
+
+
+def connect(one: Namespace, other: Namespace, cable: str, subnet: str) -> None:
+    """A cable of that name between two namespaces: addresses .1 and .2 of a subnet such as "10.0.1"."""
+    lay(one, other, cable)
     for end, number in ((one, 1), (other, 2)):
         end.run(f"ip address add {subnet}.{number}/24 dev {cable} && ip link set dev {cable} up")
     for end in (one, other):
@@ -142,3 +148,21 @@ def route(left: Namespace, router: Namespace, right: Namespace) -> None:
     router.run("sysctl -qw net.ipv4.ip_forward=1")
     left.run("ip route add default via 10.0.1.2")
     right.run("ip route add default via 10.0.2.2")
+
+
+def connect_lossy(one: Namespace, middle: Namespace, other: Namespace, percent: float) -> Program:
+    """Two hosts, 10.0.1.1 and 10.0.1.2, and between them a bridge that loses frames by a seeded die."""
+    for host, cable, number in ((one, "left", 1), (other, "right", 2)):
+        lay(host, middle, cable)
+        host.run(f"ip address add 10.0.1.{number}/24 dev {cable} && ip link set dev {cable} up")
+        middle.run(f"ip link set dev {cable} up")
+        host.wait_for_link(cable)
+    bridge = middle.start(
+        sys.executable,
+        str(pathlib.Path(__file__).parent / "peers/lossy_bridge.py"),
+        "left",
+        "right",
+        str(percent),
+    )
+    bridge.wait_for("ready")
+    return bridge

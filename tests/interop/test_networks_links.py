@@ -7,7 +7,7 @@ import pathlib
 import pytest
 
 from interop import rtps
-from interop.namespace import Namespace, connect, route
+from interop.namespace import Namespace, connect, lay, route
 from interop.networks import check_heard, listen, talk
 
 PEERS = ["roslet", "kilted", "cyclone"]
@@ -82,15 +82,16 @@ def test_an_interface_that_comes_later_is_used(tmp_path: pathlib.Path, peer: str
         Namespace(tmp_path, route=False) as switch,
         Namespace(tmp_path, route=False) as there,
     ):
-        connect(switch, there, "right", "10.0.1")
-        switch.run("ip address flush dev right && ip link add name br0 type bridge && ip link set dev br0 up")
-        switch.run("ip link set dev right master br0")
-        switch.wait_for_link("br0")
+        lay(there, switch, "right")
+        there.run("ip address add 10.0.1.2/24 dev right && ip link set dev right up")
+        switch.run("ip link add name br0 type bridge && ip link set dev br0 up")
+        switch.run("ip link set dev right master br0 && ip link set dev right up")
+        there.wait_for_link("right")
         heard = listen(there, peer)
         talker = talk(here, "roslet")
-        here.run(f"ip link add name late type veth peer name left netns {switch.pid}")
-        switch.run("ip link set dev left master br0 && ip link set dev left up")
-        here.run("ip address add 10.0.1.3/24 dev late && ip link set dev late up")
+        lay(here, switch, "late")
+        switch.run("ip link set dev late master br0 && ip link set dev late up")
+        here.run("ip address add 10.0.1.1/24 dev late && ip link set dev late up")
         check_heard(heard)
         talker.finish()
 
