@@ -410,3 +410,10 @@ class Domain:
                     one.close()
             for one in self._senders:
                 one.close()
+
+    def abandon(self) -> None:
+        """In a forked child: close the parent's sockets, and touch nothing else."""
+        self._closed = True
+        for one in (self._meta, self._user, self._group, *self._senders):
+            if one is not None:
+                one.close()

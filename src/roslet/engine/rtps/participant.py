@@ -47,6 +47,7 @@ from roslet.wire.rtps.times import INFINITE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any
 
     from roslet.engine.rtps.events import SampleReceived
@@ -132,6 +133,7 @@ class Participant:
             self._deliver,
             self._participant_discovered,
             self._participant_lost,
+            self._answered,
             self._count,
             networks,
         )
@@ -265,9 +267,10 @@ class Participant:
         now: float,
         keyed: bool = False,
         unicast: "tuple[Locator, ...]" = (),
+        accepts: "Callable[[EndpointData], bool] | None" = None,
     ) -> Writer:
         """A writer of a topic, by its names in DDS, announced from now on; `unicast`: where answers to it are to go,
-        the participant's default locators where empty."""
+        the participant's default locators where empty; `accepts` may turn down readers that would match."""
         endpoint = self._endpoint(topic, type_name, qos, b"\x02" if keyed else b"\x03", unicast)
         writer = Writer(
             endpoint,
@@ -278,6 +281,7 @@ class Participant:
             self._epoch,
             self._fragment_size,
         )
+        writer.accepts = accepts
         self.writers[writer.entity_id] = self._all_writers[writer.entity_id] = writer
         self.sedp.announce(endpoint, now)
         for remote in list(self.endpoints.values()):
@@ -380,6 +384,9 @@ class Participant:
             if endpoint.guid[:12] == remote.data.guid_prefix:
                 self._endpoint_discovered(endpoint, now)
 
+    def _answered(self, prefix: bytes) -> bool:
+        return self.sedp.answered(prefix)
+
     def _participant_lost(self, remote: RemoteParticipant) -> None:
         prefix = remote.data.guid_prefix
         for found in [one for one in self.endpoints if one[:12] == prefix]:
@@ -477,6 +484,8 @@ class Participant:
 
     def _consider_reader(self, writer: Writer, found: EndpointData, now: float) -> None:
         if found.topic != writer.data.topic or found.type_name != writer.data.type_name:
+            return
+        if writer.accepts is not None and not writer.accepts(found):
             return
         policies = incompatible(writer.qos, found.qos)
         if policies:

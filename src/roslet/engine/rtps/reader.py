@@ -361,7 +361,8 @@ class Reader:
 
     def _send_acknack(self, proxy: WriterProxy, missing: "list[int]", final: bool) -> None:
         proxy.count += 1
-        state = number_set.of(proxy.next, missing)
+        # Who has the last number that there is cannot say so.
+        state = number_set.of(min(proxy.next, number_set.MAX_NUMBER), missing)
         answer = AckNack(self.entity_id, proxy.guid[12:], state, proxy.count, final)
         self._outbox.send((self._header, proxy.info_dst, answer.emit()), proxy.addresses)
 

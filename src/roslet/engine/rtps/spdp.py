@@ -82,7 +82,8 @@ class RemoteParticipant:
 
 
 class Spdp:
-    """Announces us, and keeps the table of who is there. `discovered` and `lost` are called before the events go out."""
+    """Announces us, and keeps the table of who is there. `discovered` and `lost` are called before the events go out;
+    `answered` says whether a participant has ever shown that it knows us."""
 
     def __init__(
         self,
@@ -95,6 +96,7 @@ class Spdp:
         deliver: "Callable[[Any], None]",
         discovered: "Callable[[RemoteParticipant, float], None]",
         lost: "Callable[[RemoteParticipant], None]",
+        answered: "Callable[[bytes], bool]",
         count: "Callable[[str], None]",
         networks: "tuple[Network, ...]" = (),
     ) -> None:
@@ -109,6 +111,7 @@ class Spdp:
         self._deliver = deliver
         self._discovered = discovered
         self._lost = lost
+        self._answered = answered
         self._count = count
         self._header = header.own(own.guid_prefix)
         self._payload = own.emit()
@@ -219,6 +222,9 @@ class Spdp:
             elif moved:
                 remote.update(found, host, self._networks)
                 self._discovered(remote, now)
+            if not self._answered(prefix):
+                # Our greeting was lost, or it lost us; its next chance would be our next announcement.
+                self._outbox.send(self._announcement(now, prefix), remote.metatraffic)
         self._expire_at = min(self._expire_at or now, now)
 
     def _step(self, prefix: bytes, event: str) -> None:

@@ -96,6 +96,7 @@ class Writer:
         self.history = History(self.qos)
         self.proxies: dict[bytes, ReaderProxy] = {}
         self.last = 0
+        self.accepts: Callable[[EndpointData], bool] | None = None  # which readers are matched, where not all
         self.fragment_size = fragment_size
         self._header = header
         self._outbox = outbox
