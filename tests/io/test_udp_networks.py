@@ -163,7 +163,7 @@ def test_names_of_peers_are_resolved_beside_the_loop_and_asked_again(monkeypatch
     assert failed == ["late", "never"]
     assert found == dict.fromkeys(("early", "late"), ("10.0.0.0", "10.0.0.1", "10.0.0.2", "10.0.0.3"))
     assert tries["early"] == 1
-    assert threads == {"roslet-resolver"}
+    assert threads == {"roslet resolver"}
     reactor.close()
 
 

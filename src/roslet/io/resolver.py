@@ -54,7 +54,7 @@ class Resolver:
         self._timer = None
         if self._left and not self._closed:
             threading.Thread(
-                target=self._run, args=(tuple(self._left),), name="roslet-resolver", daemon=True
+                target=self._run, args=(tuple(self._left),), name="roslet resolver", daemon=True
             ).start()
 
     def _run(self, names: tuple[str, ...]) -> None:
