@@ -91,3 +91,7 @@ class Resolver:
             self._closed = True
         if self._timer is not None:
             self._timer.cancel()
+
+    def abandon(self) -> None:
+        """In a forked child, which has no such thread; its lock may be held for ever."""
+        self._closed = True
