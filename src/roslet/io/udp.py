@@ -447,6 +447,7 @@ class Domain:
     def abandon(self) -> None:
         """In a forked child: close the parent's sockets, and touch nothing else."""
         self._closed = True
-        for one in (self._meta, self._user, self._group, *self._senders):
+        self._resolver.abandon()
+        for one in (self._meta, self._user, self._group, self._watch, *self._senders):
             if one is not None:
                 one.close()
