@@ -4,7 +4,14 @@ Values are plain: None, bool, int, float, str, bytes, and lists of bool, int, fl
 (successful, reason). Where a caller breaks a contract an exception says so; what a value is refused for is a reason.
 """
 
-from roslet.errors import InvalidName, ParameterNotSet, RosletError
+from roslet.errors import (
+    InvalidName,
+    ParameterAlreadyDeclared,
+    ParameterNotDeclared,
+    ParameterReadOnly,
+    ParameterRefused,
+    ParameterUninitialized,
+)
 from roslet.record import Names, Record
 
 TYPE_CHECKING = False
@@ -44,32 +51,6 @@ TOLERANCE = 1e-6
 
 _INFINITE = float("inf")
 _SUCCESS: "Result" = (True, "")
-
-
-class ParameterNotDeclared(ParameterNotSet):
-    """Nobody declared a parameter of this name."""
-
-
-class ParameterUninitialized(ParameterNotSet):
-    """The parameter was declared with a type, and has no value yet."""
-
-
-class ParameterAlreadyDeclared(RosletError):
-    """A parameter of this name exists."""
-
-
-class ParameterReadOnly(RosletError):
-    """A read-only parameter is not undeclared, nor described anew."""
-
-
-class ParameterRefused(RosletError):
-    """The value does not suit the parameter; `reason` says why, `wrong_type` whether that is its type."""
-
-    def __init__(self, name: str, reason: str, wrong_type: bool = False) -> None:
-        super().__init__("%s: %s" % (name, reason))
-        self.name = name
-        self.reason = reason
-        self.wrong_type = wrong_type
 
 
 def _is_number(value: "Any") -> bool:
