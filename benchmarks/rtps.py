@@ -145,6 +145,8 @@ class Measure:
         self.got = 0
         self.answer = b""
         self.ping: bytearray | None = None
+        self.taken: list[float] = []
+        self.begin = 0.0
         self.child = start("echo", *words)
         self.end = End("ping", "pong", self.sink)
         if not self.end.reactor.run_until(self.end.matched, PATIENCE):
@@ -163,7 +165,7 @@ class Measure:
 
     def rtt(self, size: int) -> list[float]:
         """Round trips, one in flight, in microseconds."""
-        self.taken: list[float] = []
+        self.taken = []
         self.ping = payload(size)
         self.begin = time.perf_counter()
         self.end.write(self.ping)

@@ -269,8 +269,7 @@ class Writer:
         self._least = min(self._least, proxy.acked) if proxy.reliable else self._least
         self.proxies[remote.guid] = proxy
         if late:
-            for number in self.history.numbers():
-                self._repairs.send_to(proxy, number, proxy.addresses)
+            self._repairs.send_all(proxy, self.history.numbers(), proxy.addresses)
         if proxy.reliable:
             self._repairs.introduce(proxy)
             if late and len(self.history) and self._heartbeat_at is None:
