@@ -11,6 +11,8 @@ class MinimalActionClient(Node):
     def __init__(self):
         super().__init__("minimal_action_client")
         self._action_client = ActionClient(self, Fibonacci, "fibonacci")
+        self.lengths = []
+        self.result = None
 
     def goal_response_callback(self, future):
         goal_handle = future.result()
@@ -19,13 +21,21 @@ class MinimalActionClient(Node):
         self._get_result_future.add_done_callback(self.get_result_callback)
 
     def feedback_callback(self, feedback):
-        print("feedback", len(feedback.feedback.sequence))
+        self.lengths.append(len(feedback.feedback.sequence))
+        self.end()
 
     def get_result_callback(self, future):
         result = future.result().result
         if future.result().status == GoalStatus.STATUS_SUCCEEDED:
-            print("result", list(result.sequence))
-        rclpy.shutdown()
+            self.result = list(result.sequence)
+        self.end()
+
+    def end(self):
+        # Topics and services may overtake one another.
+        if self.result is not None and len(self.lengths) == 3:
+            print("feedback", self.lengths)
+            print("result", self.result)
+            rclpy.shutdown()
 
     def send_goal(self):
         self._action_client.wait_for_server()
