@@ -273,7 +273,11 @@ _RELIABLE = ReliabilityPolicy.RELIABLE
 _LOCAL = DurabilityPolicy.TRANSIENT_LOCAL
 
 qos_profile_unknown = QoSProfile(
-    HistoryPolicy.UNKNOWN, 0, ReliabilityPolicy.UNKNOWN, DurabilityPolicy.UNKNOWN, liveliness=LivelinessPolicy.UNKNOWN
+    HistoryPolicy.UNKNOWN,
+    0,
+    ReliabilityPolicy.UNKNOWN,
+    DurabilityPolicy.UNKNOWN,
+    liveliness=LivelinessPolicy.UNKNOWN,
 )
 qos_profile_default = QoSProfile(depth=10)
 qos_profile_system_default = QoSProfile(
@@ -341,8 +345,6 @@ def qos_check_compatible(
     if errors:
         return QoSCompatibility.ERROR, "".join(errors)
     return (QoSCompatibility.WARNING, "".join(warned)) if warned else (QoSCompatibility.OK, "")
-
-
 
 
 def _given(duration: Duration) -> int:
