@@ -9,6 +9,7 @@ import os
 import pathlib
 import signal
 import subprocess
+import sys
 import time
 from types import TracebackType
 
@@ -92,6 +93,13 @@ class Namespace:
         assert done.returncode == 0, f"{command}: {done.stderr}"
         return done.stdout
 
+    def wait_for_link(self, name: str) -> None:
+        """Until an interface has a carrier: the kernel takes a moment, and Fast DDS looks only once."""
+        end = time.monotonic() + 10.0
+        while "state UP" not in self.run(f"ip -o link show dev {name}"):
+            assert time.monotonic() < end, f"{name} did not come up"
+            time.sleep(0.02)
+
     def start(self, *command: str, name: str = "", **environment: str) -> Program:
         values = {key: value for key, value in os.environ.items() if not key.startswith("ROS_")}
         values.update(FASTDDS_BUILTIN_TRANSPORTS="UDPv4", ROS_DOMAIN_ID="0")
@@ -117,13 +125,20 @@ class Namespace:
         self._holder.communicate(timeout=5)
 
 
-def connect(one: Namespace, other: Namespace, cable: str, subnet: str) -> None:
-    """A cable of that name between two namespaces: addresses .1 and .2 of a subnet such as "10.0.1"."""
+def lay(one: Namespace, other: Namespace, cable: str) -> None:
+    """A cable of that name between two namespaces, without addresses and not up."""
     if os.geteuid() != 0:
         pytest.skip("only root can lay a cable between two network namespaces")
     one.run(f"ip link add name {cable} type veth peer name {cable} netns {other.pid}")
+
+
+def connect(one: Namespace, other: Namespace, cable: str, subnet: str) -> None:
+    """A cable of that name between two namespaces: addresses .1 and .2 of a subnet such as "10.0.1"."""
+    lay(one, other, cable)
     for end, number in ((one, 1), (other, 2)):
-        end.run(f"ip address add {subnet}.{number}/24 dev {cable} && ip link set {cable} up")
+        end.run(f"ip address add {subnet}.{number}/24 dev {cable} && ip link set dev {cable} up")
+    for end in (one, other):
+        end.wait_for_link(cable)
 
 
 def route(left: Namespace, router: Namespace, right: Namespace) -> None:
@@ -133,3 +148,21 @@ def route(left: Namespace, router: Namespace, right: Namespace) -> None:
     router.run("sysctl -qw net.ipv4.ip_forward=1")
     left.run("ip route add default via 10.0.1.2")
     right.run("ip route add default via 10.0.2.2")
+
+
+def connect_lossy(one: Namespace, middle: Namespace, other: Namespace, percent: float) -> Program:
+    """Two hosts, 10.0.1.1 and 10.0.1.2, and between them a bridge that loses frames by a seeded die."""
+    for host, cable, number in ((one, "left", 1), (other, "right", 2)):
+        lay(host, middle, cable)
+        host.run(f"ip address add 10.0.1.{number}/24 dev {cable} && ip link set dev {cable} up")
+        middle.run(f"ip link set dev {cable} up")
+        host.wait_for_link(cable)
+    bridge = middle.start(
+        sys.executable,
+        str(pathlib.Path(__file__).parent / "peers/lossy_bridge.py"),
+        "left",
+        "right",
+        str(percent),
+    )
+    bridge.wait_for("ready")
+    return bridge
