@@ -1,7 +1,7 @@
 """Which rclpy programs are started together, under which interpreter, and what they say.
 
-`python tests/compat/rclpy_scenes.py DISTRIBUTION [SCENE ...]` writes the files of `programs/rclpy/expected` anew, out of what the
-real rclpy of that distribution says.
+`python tests/compat/rclpy_scenes.py DISTRIBUTION [SCENE ...]` writes the files of `programs/rclpy/expected` anew, out of
+what the real rclpy of that distribution says.
 """
 
 from __future__ import annotations
@@ -16,13 +16,19 @@ from interop.namespace import Namespace, Program
 
 PROGRAMS = pathlib.Path(__file__).resolve().parent / "programs/rclpy"
 EXPECTED = PROGRAMS / "expected"
+# The package that the programs' action is in.
+DEFINITIONS = PROGRAMS / "ws"
 
 # Programs that are started together, with their arguments; each prints the same whatever the timing.
 SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
     "function talker, function listener": (("listener_function.py",), ("talker_function.py",)),
     "member talker, member listener": (("listener_member.py",), ("talker_member.py",)),
     "function talker, lambda listener": (("listener_lambda.py",), ("talker_function.py",)),
-    "function talker, two listeners": (("listener_function.py",), ("listener_member.py",), ("talker_pair.py",)),
+    "function talker, two listeners": (
+        ("listener_function.py",),
+        ("listener_member.py",),
+        ("talker_pair.py",),
+    ),
     "remapped talker and listener": (
         ("listener_function.py", "--ros-args", "-r", "chatter:=news", "-r", "__ns:=/left"),
         ("talker_function.py", "--ros-args", "-r", "/chatter:=/left/news", "-r", "__node:=teller"),
@@ -60,8 +66,28 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
             "arguments.py",
             "one",
             *("--ros-args", "-r", "__node:=renamed", "-r", "__ns:=/given", "-r", "chatter:=news"),
-            *("-r", "/absolute:=/elsewhere", "-r", "~/private:=hidden", "-p", "number:=5", "-p", "text:=word"),
-            *("-p", "list:=[1, 2]", "-p", "flag:=true", "-p", "real:=2.5", "--log-level", "warn", "--", "two"),
+            *(
+                "-r",
+                "/absolute:=/elsewhere",
+                "-r",
+                "~/private:=hidden",
+                "-p",
+                "number:=5",
+                "-p",
+                "text:=word",
+            ),
+            *(
+                "-p",
+                "list:=[1, 2]",
+                "-p",
+                "flag:=true",
+                "-p",
+                "real:=2.5",
+                "--log-level",
+                "warn",
+                "--",
+                "two",
+            ),
         ),
     ),
     "a file of parameters": (
@@ -132,12 +158,25 @@ def under_rclpy(distribution: str, scene: str, folder: pathlib.Path) -> str:
     return play(scene, (str(peers.require(distribution)),), folder)
 
 
+def under_roslet(scene: str, folder: pathlib.Path) -> str:
+    """As `play`, under `roslet run`."""
+    return play(
+        scene,
+        (sys.executable, "-m", "roslet.cli.main", "run"),
+        folder,
+        PYTHONPATH=str(peers.ROOT / "src"),
+        ROSLET_TYPES=str(DEFINITIONS),
+    )
+
+
 def main(distribution: str, *scenes: str) -> None:
     """Write what is expected anew."""
     EXPECTED.mkdir(exist_ok=True)
     for scene in scenes or SCENES:
         with tempfile.TemporaryDirectory() as folder:
-            file_of(scene).write_text(under_rclpy(distribution, scene, pathlib.Path(folder)), encoding="utf-8")
+            file_of(scene).write_text(
+                under_rclpy(distribution, scene, pathlib.Path(folder)), encoding="utf-8"
+            )
         print(scene)
 
 

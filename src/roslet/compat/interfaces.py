@@ -123,7 +123,7 @@ class _Converted:
 
 
 def _converter(row: Any) -> Callable[[Any], Any] | None:
-    _, base, shape, size, _ = row
+    _, base, shape, _, _ = row
     if not isinstance(base, str) or shape == SINGLE or base not in TYPECODES or base == "bool":
         return None
     if shape in (BOUNDED, UNBOUNDED):
@@ -178,20 +178,18 @@ def _constructor(kind: Any) -> Callable[..., None]:
 
 
 def _printer(kind: Any, name: str) -> Callable[[Any], str]:
-    rows = [(row[0], row[2]) for row in kind._spec]
+    fields = [row[0] for row in kind._spec]
 
     def __repr__(self: Any) -> str:
-        inside = ", ".join(f"{field}={_shown(getattr(self, field), shape)}" for field, shape in rows)
+        inside = ", ".join(f"{field}={_shown(getattr(self, field))}" for field in fields)
         return f"{name}({inside})"
 
     return __repr__
 
 
-def _shown(value: Any, shape: int) -> str:
+def _shown(value: Any) -> str:
     if isinstance(value, array.array):
         return repr(value.tolist())
-    if shape == FIXED and hasattr(value, "tolist"):
-        return repr(value)
     return repr(value)
 
 

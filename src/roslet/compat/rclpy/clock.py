@@ -175,17 +175,19 @@ class Clock:
         every = JumpThreshold(
             min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1), on_clock_change=True
         )
-        # A bound method would be held weakly by the context, and be gone at once.
-        context.on_shutdown(lambda: self._wake())
-        with self.create_jump_callback(every, post_callback=changed.append), self._moved:
-            while context.ok():
-                left = until - self._nanoseconds()
-                if any(jump.clock_change is not ClockChange.ROS_TIME_NO_CHANGE for jump in changed):
-                    return False
-                if left <= 0:
-                    return True
-                self._moved.wait(_LOOK if self._stands() else min(left * 1e-9, _LOOK))
-        return False
+        context.on_shutdown(self._wake)
+        try:
+            with self.create_jump_callback(every, post_callback=changed.append), self._moved:
+                while context.ok():
+                    if any(jump.clock_change is not ClockChange.ROS_TIME_NO_CHANGE for jump in changed):
+                        return False
+                    left = until - self._nanoseconds()
+                    if left <= 0:
+                        return True
+                    self._moved.wait(_LOOK if self._stands() else min(left * 1e-9, _LOOK))
+            return False
+        finally:
+            context._off_shutdown(self._wake)
 
     def _stands(self) -> bool:
         """Whether it moves only when it is told to."""

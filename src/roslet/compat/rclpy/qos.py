@@ -71,7 +71,8 @@ class QoSPolicyEnum(IntEnum):
     def __str__(self) -> str:
         return str(self.value)
 
-    __format__ = int.__format__
+    def __format__(self, format_spec: str) -> str:
+        return format(int(self), format_spec)
 
 
 class HistoryPolicy(QoSPolicyEnum):
@@ -185,6 +186,14 @@ class QoSProfile:
         liveliness: Any
         liveliness_lease_duration: Any
         avoid_ros_namespace_conventions: Any
+        _history: HistoryPolicy
+        _depth: int
+        _reliability: ReliabilityPolicy
+        _durability: DurabilityPolicy
+        _lifespan: Duration
+        _deadline: Duration
+        _liveliness: LivelinessPolicy
+        _liveliness_lease_duration: Duration
 
     def _values(self) -> tuple[tuple[str, Any], ...]:
         return tuple((name, getattr(self, "_" + name)) for name in _FIELDS)

@@ -59,8 +59,7 @@ client.wait_for_server()
 
 async def ask():
     handle = await client.send_goal_async(Fibonacci.Goal(order=3))
-    answer = await handle.get_result_async()
-    return answer
+    return await handle.get_result_async()
 
 
 executor = rclpy.get_global_executor()

@@ -19,11 +19,7 @@ from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 from test_msgs.action import Fibonacci
 
-NAMES = {
-    getattr(GoalStatus, name): name[7:]
-    for name in dir(GoalStatus)
-    if name.startswith("STATUS_")
-}
+NAMES = {getattr(GoalStatus, name): name[7:] for name in dir(GoalStatus) if name.startswith("STATUS_")}
 
 
 class FibonacciServer(Node):
@@ -115,7 +111,9 @@ executor.add_node(server)
 executor.add_node(client)
 thread = threading.Thread(target=executor.spin, daemon=True)
 thread.start()
-print("there", client._action_client.wait_for_server(timeout_sec=10.0), client._action_client.server_is_ready())
+print(
+    "there", client._action_client.wait_for_server(timeout_sec=10.0), client._action_client.server_is_ready()
+)
 print("absent", ActionClient(client, Fibonacci, "nowhere").wait_for_server(timeout_sec=0.2))
 client.run(5)
 client.run(-1)
@@ -126,7 +124,9 @@ client.run(8)
 client.run(13)
 
 # Several at once.
-handles = [wait(client._action_client.send_goal_async(Fibonacci.Goal(order=order))) for order in (2, 3, 4, 1001)]
+handles = [
+    wait(client._action_client.send_goal_async(Fibonacci.Goal(order=order))) for order in (2, 3, 4, 1001)
+]
 futures = [handle.get_result_async() for handle in handles]
 print([list(wait(future).result.sequence) for future in futures[:3]])
 print("still under way", futures[3].done(), handles[3].goal_id.uuid.dtype, len(handles[3].goal_id.uuid))

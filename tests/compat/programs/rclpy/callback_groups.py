@@ -70,7 +70,12 @@ print(group.can_execute(timer), group.beginning_execution(timer))
 exclusive = MutuallyExclusiveCallbackGroup()
 first = node.create_timer(1.0, lambda: None, callback_group=exclusive)
 second = node.create_timer(1.0, lambda: None, callback_group=exclusive)
-print(exclusive.can_execute(first), exclusive.beginning_execution(first), exclusive.can_execute(second), exclusive.beginning_execution(second))
+print(
+    exclusive.can_execute(first),
+    exclusive.beginning_execution(first),
+    exclusive.can_execute(second),
+    exclusive.beginning_execution(second),
+)
 exclusive.ending_execution(first)
 print(exclusive.can_execute(second))
 rclpy.shutdown()

@@ -88,7 +88,9 @@ print(executor.shutdown())
 with MultiThreadedExecutor(num_threads=3) as executor:
     executor.add_node(node)
     seen = []
-    timer = node.create_timer(0.02, lambda: seen.append(threading.current_thread() is threading.main_thread()))
+    timer = node.create_timer(
+        0.02, lambda: seen.append(threading.current_thread() is threading.main_thread())
+    )
     end = time.monotonic() + 0.3
     while time.monotonic() < end:
         executor.spin_once(timeout_sec=0.1)
@@ -102,7 +104,11 @@ for wrong in (0, -1):
         print(MultiThreadedExecutor(wrong)._executor._max_workers > 0)
     except Exception as error:
         print(type(error).__name__)
-print(issubclass(ExternalShutdownException, Exception), issubclass(TimeoutException, Exception), issubclass(ShutdownException, Exception))
+print(
+    issubclass(ExternalShutdownException, Exception),
+    issubclass(TimeoutException, Exception),
+    issubclass(ShutdownException, Exception),
+)
 
 # A node belongs to one executor.
 one, two = SingleThreadedExecutor(), SingleThreadedExecutor()

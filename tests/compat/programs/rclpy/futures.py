@@ -73,7 +73,10 @@ async def chained():
     return await inner * 2
 
 
-print(run(chained).result())
+chain = executor.create_task(chained)
+for _ in range(10):
+    executor.spin_once(timeout_sec=0.02)
+print(chain.result())
 
 
 async def fails():
@@ -92,7 +95,8 @@ future = executor.create_future()
 future.add_done_callback(lambda done: called.append("by the executor"))
 future.set_result(None)
 print(called[-1])
-executor.spin_once(timeout_sec=0.1)
+for _ in range(5):
+    executor.spin_once(timeout_sec=0.02)
 print(called[-1])
 
 never = executor.create_future()

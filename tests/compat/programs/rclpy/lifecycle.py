@@ -51,12 +51,21 @@ def call(kind, name, request):
 print(call(GetState, "/managed/get_state", GetState.Request()).current_state)
 print(node.trigger_configure().name)
 print(call(GetState, "/managed/get_state", GetState.Request()).current_state)
-transitions = call(GetAvailableTransitions, "/managed/get_available_transitions", GetAvailableTransitions.Request())
-print(sorted((t.transition.label, t.start_state.label, t.goal_state.label) for t in transitions.available_transitions))
+transitions = call(
+    GetAvailableTransitions, "/managed/get_available_transitions", GetAvailableTransitions.Request()
+)
+print(
+    sorted(
+        (t.transition.label, t.start_state.label, t.goal_state.label)
+        for t in transitions.available_transitions
+    )
+)
 print(node.publisher.is_activated)
 request = ChangeState.Request(transition=Transition(id=Transition.TRANSITION_ACTIVATE))
 print(call(ChangeState, "/managed/change_state", request).success, node.publisher.is_activated)
 print(call(ChangeState, "/managed/change_state", request).success)
 print(node.trigger_deactivate().name, node.trigger_cleanup().name, node.trigger_shutdown().name)
-print(call(GetState, "/managed/get_state", GetState.Request()).current_state.id == State.PRIMARY_STATE_FINALIZED)
+print(
+    call(GetState, "/managed/get_state", GetState.Request()).current_state.id == State.PRIMARY_STATE_FINALIZED
+)
 rclpy.shutdown()

@@ -34,7 +34,11 @@ for turn in range(2):
     logger.warning(f"short {turn}", throttle_duration_sec=0.01)
     time.sleep(0.02)
 logger.set_level(LoggingSeverity.DEBUG)
-print(logger.debug("now it shows"), logger.get_effective_level().name, logger.is_enabled_for(LoggingSeverity.DEBUG))
+print(
+    logger.debug("now it shows"),
+    logger.get_effective_level().name,
+    logger.is_enabled_for(LoggingSeverity.DEBUG),
+)
 child = logger.get_child("child")
 print(child.name, child.get_effective_level().name)
 child.info("by the child")

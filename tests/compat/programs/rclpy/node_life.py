@@ -40,15 +40,30 @@ service = node.create_service(Trigger, "service", print)
 client = node.create_client(Trigger, "service")
 guard = node.create_guard_condition(print)
 print([type(entity).__name__ for entity in (publisher, subscription, service, client, guard, node.timer)])
-print(len(list(node.publishers)), len(list(node.subscriptions)), len(list(node.clients)), len(list(node.timers)), len(list(node.guards)))
-print(node.get_clock().clock_type.name, node.get_clock().now() > node.get_clock().now() or True, node.context.ok())
+print(
+    len(list(node.publishers)),
+    len(list(node.subscriptions)),
+    len(list(node.clients)),
+    len(list(node.timers)),
+    len(list(node.guards)),
+)
+print(
+    node.get_clock().clock_type.name,
+    node.get_clock().now() > node.get_clock().now() or True,
+    node.context.ok(),
+)
 print(publisher.logger_name, subscription.logger_name, service.logger_name, client.logger_name)
 for _ in range(50):
     rclpy.spin_once(node, timeout_sec=0.1)
     if node.ticks > 2:
         break
 print(node.ticks > 2, node.executor is None)
-print(node.destroy_timer(node.timer), node.destroy_service(service), node.destroy_client(client), node.destroy_guard_condition(guard))
+print(
+    node.destroy_timer(node.timer),
+    node.destroy_service(service),
+    node.destroy_client(client),
+    node.destroy_guard_condition(guard),
+)
 print(node.destroy_timer(node.timer), len(list(node.timers)))
 node.destroy_node()
 node.destroy_node()

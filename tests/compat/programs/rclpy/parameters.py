@@ -29,10 +29,25 @@ node = rclpy.create_node("parameters")
 show("undeclared", lambda: node.get_parameter("text"))
 show("declare", lambda: node.declare_parameter("text", "hello").value)
 show("again", lambda: node.declare_parameter("text", "hello"))
-show("several", lambda: [(p.name, p.value, p.type_.name) for p in node.declare_parameters("group", [
-    ("integer", 3), ("double", 2.5), ("bool", True), ("bytes", [b"a", b"b"]), ("bools", [True, False]),
-    ("integers", [1, 2]), ("doubles", [1.0, 2.0]), ("strings", ["x", "y"]),
-])])
+show(
+    "several",
+    lambda: [
+        (p.name, p.value, p.type_.name)
+        for p in node.declare_parameters(
+            "group",
+            [
+                ("integer", 3),
+                ("double", 2.5),
+                ("bool", True),
+                ("bytes", [b"a", b"b"]),
+                ("bools", [True, False]),
+                ("integers", [1, 2]),
+                ("doubles", [1.0, 2.0]),
+                ("strings", ["x", "y"]),
+            ],
+        )
+    ],
+)
 show("typed", lambda: node.declare_parameter("typed", Parameter.Type.INTEGER).value)
 show("unset", lambda: node.get_parameter("typed"))
 show("dynamic", lambda: node.declare_parameter("dynamic", 1, ParameterDescriptor(dynamic_typing=True)).value)
@@ -46,12 +61,21 @@ show("or", lambda: node.get_parameter_or("absent", Parameter("absent", value=5))
 show("or none", lambda: node.get_parameter_or("absent").type_.name)
 show("has", lambda: (node.has_parameter("text"), node.has_parameter("absent")))
 show("many", lambda: [p.value for p in node.get_parameters(["text", "group.bool"])])
-show("prefix", lambda: sorted((k, p.value) for k, p in node.get_parameters_by_prefix("group").items() if "s" not in k))
+show(
+    "prefix",
+    lambda: sorted((k, p.value) for k, p in node.get_parameters_by_prefix("group").items() if "s" not in k),
+)
 show("type", lambda: (node.get_parameter_type("text"), node.get_parameter_types(["group.bool"])))
 show("list", lambda: sorted(node.list_parameters(["group"], 0).names))
 show("prefixes", lambda: node.list_parameters([], 0).prefixes)
 
-show("set", lambda: [told(r) for r in node.set_parameters([Parameter("text", value="bye"), Parameter("group.integer", value=4)])])
+show(
+    "set",
+    lambda: [
+        told(r)
+        for r in node.set_parameters([Parameter("text", value="bye"), Parameter("group.integer", value=4)])
+    ],
+)
 show("wrong type", lambda: [told(r) for r in node.set_parameters([Parameter("text", value=1)])])
 try:
     node.set_parameters([Parameter("absent", value=1)])
@@ -60,7 +84,12 @@ except ParameterNotDeclaredException:
 show("read only", lambda: [told(r) for r in node.set_parameters([Parameter("fixed", value=8)])])
 show("dynamic", lambda: [told(r) for r in node.set_parameters([Parameter("dynamic", value="text")])])
 show("typed", lambda: [told(r) for r in node.set_parameters([Parameter("typed", value=9)])])
-show("atomically", lambda: told(node.set_parameters_atomically([Parameter("text", value="x"), Parameter("group.integer", value="no")])))
+show(
+    "atomically",
+    lambda: told(
+        node.set_parameters_atomically([Parameter("text", value="x"), Parameter("group.integer", value="no")])
+    ),
+)
 show("unchanged", lambda: node.get_parameter("text").value)
 
 bounded = ParameterDescriptor(
@@ -75,11 +104,21 @@ real = ParameterDescriptor(floating_point_range=[FloatingPointRange(from_value=0
 show("range", lambda: node.declare_parameter("real", 0.5, real).value)
 for value in (0.75, 1.5, 0.3, 1.0):
     show(f"to {value}", lambda: [told(r) for r in node.set_parameters([Parameter("real", value=value)])])
-show("outside", lambda: node.declare_parameter("outside", 99, ParameterDescriptor(integer_range=[IntegerRange(from_value=0, to_value=10)])))
+show(
+    "outside",
+    lambda: node.declare_parameter(
+        "outside", 99, ParameterDescriptor(integer_range=[IntegerRange(from_value=0, to_value=10)])
+    ),
+)
 show("describe", lambda: node.describe_parameter("bounded"))
 show("describe", lambda: [d.type for d in node.describe_parameters(["text", "group.doubles"])])
 show("describe", lambda: node.describe_parameter("absent"))
-show("descriptor", lambda: node.set_descriptor("text", ParameterDescriptor(description="new", type=ParameterType.PARAMETER_STRING)))
+show(
+    "descriptor",
+    lambda: node.set_descriptor(
+        "text", ParameterDescriptor(description="new", type=ParameterType.PARAMETER_STRING)
+    ),
+)
 show("descriptor", lambda: node.describe_parameter("text").description)
 
 calls = []
@@ -129,23 +168,52 @@ except ParameterNotDeclaredException:
 parameter = Parameter("p", Parameter.Type.INTEGER, 3)
 print(parameter.name, parameter.type_, parameter.value, parameter.get_parameter_value().integer_value)
 print(parameter.to_parameter_msg())
-print(Parameter.from_parameter_msg(parameter.to_parameter_msg()) == parameter, parameter == Parameter("p", value=3))
+print(
+    Parameter.from_parameter_msg(parameter.to_parameter_msg()) == parameter,
+    parameter == Parameter("p", value=3),
+)
 show("mismatch", lambda: Parameter("p", Parameter.Type.INTEGER, "three"))
 show("no value", lambda: Parameter(3).value)
 for value in (None, True, 3, 2.5, "s", [b"a"], [True], [1], [1.5], ["s"], (), [], (1, 2), {}, [None]):
     show(f"type of {value!r}", lambda: Parameter.Type.from_parameter_value(value).name)
 for text in ("1", "1.5", "true", "yes", "text", "[1, 2]", "[1, 2.5]", "[a, b]", "[1, a]", "", "null", "'1'"):
     show(f"from {text!r}", lambda: get_parameter_value(text))
-show("to python", lambda: parameter_value_to_python(ParameterValue(type=ParameterType.PARAMETER_STRING, string_value="v")))
+show(
+    "to python",
+    lambda: parameter_value_to_python(ParameterValue(type=ParameterType.PARAMETER_STRING, string_value="v")),
+)
 show("to python", lambda: parameter_value_to_python(ParameterValue(type=77)))
 
-free = rclpy.create_node("free", allow_undeclared_parameters=True, parameter_overrides=[Parameter("given", value=1)],
-                         automatically_declare_parameters_from_overrides=True)
-show("free", lambda: (free.get_parameter("given").value, free.get_parameter("absent").value, free.get_parameter("absent").type_.name))
+free = rclpy.create_node(
+    "free",
+    allow_undeclared_parameters=True,
+    parameter_overrides=[Parameter("given", value=1)],
+    automatically_declare_parameters_from_overrides=True,
+)
+show(
+    "free",
+    lambda: (
+        free.get_parameter("given").value,
+        free.get_parameter("absent").value,
+        free.get_parameter("absent").type_.name,
+    ),
+)
 show("free", lambda: [told(r) for r in free.set_parameters([Parameter("new", value=2)])])
 show("free", lambda: free.get_parameter("new").value)
 over = rclpy.create_node("over", parameter_overrides=[Parameter("given", value=1)])
 show("over", lambda: (over.declare_parameter("given", 5).value, over.has_parameter("given")))
-show("ignored", lambda: rclpy.create_node("third", parameter_overrides=[Parameter("g", value=1)]).declare_parameter("g", 5, ignore_override=True).value)
-show("override of another type", lambda: rclpy.create_node("fourth", parameter_overrides=[Parameter("g", value="x")]).declare_parameter("g", 5))
+show(
+    "ignored",
+    lambda: (
+        rclpy.create_node("third", parameter_overrides=[Parameter("g", value=1)])
+        .declare_parameter("g", 5, ignore_override=True)
+        .value
+    ),
+)
+show(
+    "override of another type",
+    lambda: rclpy.create_node("fourth", parameter_overrides=[Parameter("g", value="x")]).declare_parameter(
+        "g", 5
+    ),
+)
 rclpy.shutdown()

@@ -21,7 +21,9 @@ def show(name, function):
 
 for name in ("chatter", "/chatter", "~/chatter", "~", "{node}/chatter"):
     publisher = node.create_publisher(String, name, 10)
-    print(name, publisher.topic, publisher.topic_name, publisher.qos_profile.depth, publisher.msg_type is String)
+    print(
+        name, publisher.topic, publisher.topic_name, publisher.qos_profile.depth, publisher.msg_type is String
+    )
     node.destroy_publisher(publisher)
 for name in ("", "a b", "1a", "a/"):
     show(repr(name), lambda: node.create_publisher(String, name, 10))
@@ -35,7 +37,12 @@ show("bad name", lambda: node.create_subscription(String, "a b", print, 10))
 heard = []
 publisher = node.create_publisher(String, "chatter", 10)
 subscription = node.create_subscription(String, "chatter", heard.append, QoSProfile(depth=5))
-print(subscription.topic_name, subscription.qos_profile.depth, len(list(node.publishers)), len(list(node.subscriptions)))
+print(
+    subscription.topic_name,
+    subscription.qos_profile.depth,
+    len(list(node.publishers)),
+    len(list(node.subscriptions)),
+)
 
 
 def settle(done):
@@ -66,7 +73,12 @@ print([message.data for message in heard])
 # A subscription that fits every publisher, one that does not.
 best = node.create_publisher(Int32, "best", qos_profile_sensor_data)
 numbers = []
-node.create_subscription(Int32, "best", lambda message: numbers.append(message.data), QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_AVAILABLE))
+node.create_subscription(
+    Int32,
+    "best",
+    lambda message: numbers.append(message.data),
+    QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_AVAILABLE),
+)
 settle(lambda: best.get_subscription_count() == 1)
 best.publish(Int32(data=4))
 settle(lambda: numbers)

@@ -52,7 +52,10 @@ def sleeper():
         woken.append("interrupted")
 
 
-others = [threading.Thread(target=sleeper), threading.Thread(target=lambda: woken.append(steady.sleep_for(Duration(seconds=10))))]
+others = [
+    threading.Thread(target=sleeper),
+    threading.Thread(target=lambda: woken.append(steady.sleep_for(Duration(seconds=10)))),
+]
 for other in others:
     other.start()
     time.sleep(0.1)

@@ -25,7 +25,11 @@ pose = PoseWithCovariance()
 pose.covariance[7] = 2.5
 again = deserialize_message(serialize_message(pose), PoseWithCovariance)
 print(again == pose, type(again.covariance).__name__, again.covariance.shape, again.covariance[7])
-print(deserialize_message(serialize_message(PointField(name="x", datatype=PointField.FLOAT32, count=1)), PointField))
+print(
+    deserialize_message(
+        serialize_message(PointField(name="x", datatype=PointField.FLOAT32, count=1)), PointField
+    )
+)
 array = UInt8MultiArray(data=[1, 2, 3])
 print(deserialize_message(serialize_message(array), UInt8MultiArray) == array)
 show("too short", lambda: deserialize_message(data[:6], String))

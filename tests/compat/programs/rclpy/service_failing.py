@@ -28,7 +28,7 @@ client.wait_for_service()
 future = client.call_async(Trigger.Request())
 try:
     rclpy.spin_until_future_complete(node, future, timeout_sec=1.0)
-except TypeError as error:
+except TypeError:
     print("TypeError")
 print(future.done(), rclpy.ok())
 rclpy.shutdown()

@@ -32,7 +32,9 @@ async def slow(request, response):
 
 node.create_service(Trigger, "function", trigger)
 node.create_service(Trigger, "~/coroutine", slow)
-node.create_service(SetBool, "switch", lambda request, response: SetBool.Response(success=request.data, message="new"))
+node.create_service(
+    SetBool, "switch", lambda request, response: SetBool.Response(success=request.data, message="new")
+)
 node.create_service(Empty, "empty", lambda request, response: response)
 
 
@@ -81,7 +83,7 @@ print("cancelled", future.cancelled(), future.done())
 for wrong in (None, Trigger.Response(), SetBool.Request()):
     try:
         lonely.call_async(wrong)
-    except TypeError as error:
+    except TypeError:
         print("TypeError", type(wrong).__name__)
 
 # A callback of the future, a coroutine that awaits several calls.

@@ -60,7 +60,10 @@ show("equal", lambda: ros == 10)
 show("less", lambda: (ros < ros + second, ros <= ros, ros > ros, ros >= ros))
 show("less", lambda: ros < system)
 show("less", lambda: ros < 10)
-show("durations", lambda: (second == Duration(nanoseconds=S_TO_NS), second != second, second < Infinite, second >= second))
+show(
+    "durations",
+    lambda: (second == Duration(nanoseconds=S_TO_NS), second != second, second < Infinite, second >= second),
+)
 show("durations", lambda: second == 1)
 show("durations", lambda: second < 1)
 show("hash", lambda: hash(second) == hash(Duration(seconds=1)))
@@ -77,7 +80,13 @@ show("from another", lambda: Duration.from_msg(TimeMsg()))
 for kind in (ClockType.SYSTEM_TIME, ClockType.STEADY_TIME, ClockType.ROS_TIME):
     clock = Clock(clock_type=kind)
     first = clock.now()
-    print(kind.name, type(clock).__name__, first.clock_type == kind, clock.clock_type == kind, clock.now() >= first)
+    print(
+        kind.name,
+        type(clock).__name__,
+        first.clock_type == kind,
+        clock.clock_type == kind,
+        clock.now() >= first,
+    )
 show("a clock", lambda: Clock().clock_type.name)
 show("a clock", lambda: Clock(clock_type=1))
 now = Clock().now()
@@ -111,4 +120,7 @@ print(jumps)
 show("threshold", lambda: JumpThreshold(min_forward=Duration(seconds=-1), min_backward=None))
 show("threshold", lambda: JumpThreshold(min_forward=None, min_backward=Duration(seconds=1)))
 show("threshold", lambda: JumpThreshold(min_forward=None, min_backward=None, on_clock_change=False))
-show("jump", lambda: clock.create_jump_callback(JumpThreshold(min_forward=None, min_backward=None), pre_callback="no"))
+show(
+    "jump",
+    lambda: clock.create_jump_callback(JumpThreshold(min_forward=None, min_backward=None), pre_callback="no"),
+)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # Whether something is an interface class, and how its hash is written.
+from rcl_interfaces.msg import Log
 from rclpy.type_hash import TypeHash
 from rclpy.type_support import check_for_type_support, check_is_valid_msg_type, check_is_valid_srv_type
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
-from rcl_interfaces.msg import Log
 
 
 def show(name, function):

@@ -22,10 +22,42 @@ for name in ("node", "node_1", "", "1node", "no-de", "no/de", "nö", "a" * 256, 
     show(validate_node_name, name)
 for name in ("/", "/a/b", "", "a", "/a/", "/1a", "/a//b", "/a b", "/a_", "/a__b", "/" + "n" * 300):
     show(validate_namespace, name)
-for name in ("chatter", "/chatter", "~/chatter", "~", "", "a/", "/", "1a", "a b", "a//b", "{node}/a", "{ns", "a}b", "{1a}", "a~b", "a__b", "ä", "_a"):
+for name in (
+    "chatter",
+    "/chatter",
+    "~/chatter",
+    "~",
+    "",
+    "a/",
+    "/",
+    "1a",
+    "a b",
+    "a//b",
+    "{node}/a",
+    "{ns",
+    "a}b",
+    "{1a}",
+    "a~b",
+    "a__b",
+    "ä",
+    "_a",
+):
     show(validate_topic_name, name)
 show(validate_topic_name, "a b", is_service=True)
-for name in ("/chatter", "chatter", "/a/b", "/a/", "/", "", "/1a", "/a__b", "/a//b", "/a{b}", "/~", "/" + "t" * 300):
+for name in (
+    "/chatter",
+    "chatter",
+    "/a/b",
+    "/a/",
+    "/",
+    "",
+    "/1a",
+    "/a__b",
+    "/a//b",
+    "/a{b}",
+    "/~",
+    "/" + "t" * 300,
+):
     show(validate_full_topic_name, name)
 show(validate_full_topic_name, "a", is_service=True)
 for name in ("", "a", "a.b", "a b"):

@@ -15,7 +15,15 @@ kept = QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 publisher = node.create_publisher(Int32, "kept", kept)
 for number in range(5):
     publisher.publish(Int32(data=number))
-print(wait_for_message(Int32, node, "kept", qos_profile=QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL), time_to_wait=5.0))
+print(
+    wait_for_message(
+        Int32,
+        node,
+        "kept",
+        qos_profile=QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        time_to_wait=5.0,
+    )
+)
 heard = []
 node.create_subscription(Int32, "kept", lambda message: heard.append(message.data), kept)
 end = time.monotonic() + 5
