@@ -5,6 +5,7 @@ Values are plain: None, bool, int, float, str, bytes, and lists of bool, int, fl
 """
 
 from roslet.errors import (
+    InvalidName,
     ParameterAlreadyDeclared,
     ParameterNotDeclared,
     ParameterReadOnly,
@@ -276,10 +277,11 @@ class Parameters:
         """Declare a parameter with a value, whose type it then has, or with a type alone, or with a descriptor that allows
         any. Calls on_set and post_set. Returns it as it is, with the override where there is one.
 
-        Raises ParameterAlreadyDeclared, ParameterRefused, ValueError where neither value nor type is given, TypeError.
+        Raises InvalidName, ParameterAlreadyDeclared, ParameterRefused, ValueError where neither value nor type is given,
+        TypeError.
         """
         if not name:
-            raise ValueError("a parameter's name must not be empty")
+            raise InvalidName("a parameter's name must not be empty")
         if name in self._values:
             raise ParameterAlreadyDeclared(name)
         described = (descriptor or Descriptor()).replace(name=name)

@@ -194,7 +194,7 @@ class Ros2Publisher(_Endpoint, Publisher):
         """Say that this publisher is alive although it has nothing to publish; for liveliness "manual_by_topic"."""
         writer = self._open()
         with self._shell.reactor.lock:
-            writer.assert_liveliness()
+            writer.assert_liveliness(self._network.reactor.now())
             self._shell.flush()
 
     def _flushed(self) -> bool:
