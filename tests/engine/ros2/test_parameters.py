@@ -6,6 +6,7 @@ import pytest
 
 from roslet.engine.ros2 import parameters as p
 from roslet.engine.ros2.parameters import Descriptor, Parameter, Parameters, type_of
+from roslet.errors import InvalidName
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -71,9 +72,10 @@ def test_declaring_gives_value_type_and_override() -> None:
     assert store.declare("e", [1.0]) == Parameter("e", [], p.DOUBLE_ARRAY)
     with pytest.raises(p.ParameterAlreadyDeclared):
         store.declare("a", 2)
-    for name, kind in (("", 1), ("n", None)):
-        with pytest.raises(ValueError):
-            store.declare(name, kind)
+    with pytest.raises(InvalidName):
+        store.declare("", 1)
+    with pytest.raises(ValueError):
+        store.declare("n")
     with pytest.raises(ValueError):
         store.declare("n", None, p.BOOL, Descriptor(dynamic_typing=True))
     with pytest.raises(TypeError):

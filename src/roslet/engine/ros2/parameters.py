@@ -4,7 +4,14 @@ Values are plain: None, bool, int, float, str, bytes, and lists of bool, int, fl
 (successful, reason). Where a caller breaks a contract an exception says so; what a value is refused for is a reason.
 """
 
-from roslet.errors import ParameterNotSet, RosletError
+from roslet.errors import (
+    InvalidName,
+    ParameterAlreadyDeclared,
+    ParameterNotDeclared,
+    ParameterReadOnly,
+    ParameterRefused,
+    ParameterUninitialized,
+)
 from roslet.record import Names, Record
 
 TYPE_CHECKING = False
@@ -44,32 +51,6 @@ TOLERANCE = 1e-6
 
 _INFINITE = float("inf")
 _SUCCESS: "Result" = (True, "")
-
-
-class ParameterNotDeclared(ParameterNotSet):
-    """Nobody declared a parameter of this name."""
-
-
-class ParameterUninitialized(ParameterNotSet):
-    """The parameter was declared with a type, and has no value yet."""
-
-
-class ParameterAlreadyDeclared(RosletError):
-    """A parameter of this name exists."""
-
-
-class ParameterReadOnly(RosletError):
-    """A read-only parameter is not undeclared, nor described anew."""
-
-
-class ParameterRefused(RosletError):
-    """The value does not suit the parameter; `reason` says why, `wrong_type` whether that is its type."""
-
-    def __init__(self, name: str, reason: str, wrong_type: bool = False) -> None:
-        super().__init__("%s: %s" % (name, reason))
-        self.name = name
-        self.reason = reason
-        self.wrong_type = wrong_type
 
 
 def _is_number(value: "Any") -> bool:
@@ -119,7 +100,7 @@ def type_of(value: "Any") -> int:
         try:
             found = _of_elements(value)
         except TypeError:
-            pass  # not iterable
+            found = None  # not iterable
     if found is None:
         raise TypeError("no parameter can have the value %r" % (value,))
     return found
@@ -296,10 +277,11 @@ class Parameters:
         """Declare a parameter with a value, whose type it then has, or with a type alone, or with a descriptor that allows
         any. Calls on_set and post_set. Returns it as it is, with the override where there is one.
 
-        Raises ParameterAlreadyDeclared, ParameterRefused, ValueError where neither value nor type is given, TypeError.
+        Raises InvalidName, ParameterAlreadyDeclared, ParameterRefused, ValueError where neither value nor type is given,
+        TypeError.
         """
         if not name:
-            raise ValueError("a parameter's name must not be empty")
+            raise InvalidName("a parameter's name must not be empty")
         if name in self._values:
             raise ParameterAlreadyDeclared(name)
         described = (descriptor or Descriptor()).replace(name=name)
