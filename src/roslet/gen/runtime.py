@@ -152,6 +152,18 @@ def message_class_of(name: str, definition: str) -> type[Message]:
     return _Scope(own).message(name)
 
 
+def described_class(name: str, description: dict[str, Any]) -> type[Message]:
+    """The ROS 2 class of a message that a peer described (`definition_text` says how).
+
+    Like `message_class_of`, it comes before all others of its name. Raises DefinitionError where the description is wrong or
+    incomplete.
+    """
+    from roslet.idl.described import definition_text
+
+    _forget("ros2", registry("ros2").load_full_text(name, definition_text(description)))
+    return message_class("ros2", name)
+
+
 def _guess(path: str, names: list[TypeName]) -> Dialect:
     import os
 

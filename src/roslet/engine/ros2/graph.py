@@ -177,6 +177,17 @@ class Graph:
 
     # -- what it answers
 
+    def complete(self) -> bool:
+        """Whether every participant of ROS has told of its nodes, and every endpoint that it told of is known: nothing is
+        known to be missing."""
+        for participant in self._participants.values():
+            if participant.enclave is not None and not participant.told:
+                return False
+            for guid in participant.owners:
+                if guid not in self._endpoints:
+                    return False
+        return True
+
     def nodes(self) -> "list[NodeInfo]":
         """Every node that its participant has told of, ours included."""
         found: list[NodeInfo] = []
