@@ -1,131 +1,102 @@
-"""Peer programs of the ROS 2 tests, several in one namespace of their own; see peers/commands.py for how they are told."""
+"""A roslet Context beside real peers: what they see of each other, and calls between them."""
 
 from __future__ import annotations
 
-import json
 import pathlib
-import queue
-import subprocess
+import signal
 import sys
-import threading
 import time
-from collections.abc import Callable
-from typing import Any
 
 import peers
-from interop.namespace import Namespace
+from interop.namespace import Namespace, Program
 
 PROGRAMS = peers.ROOT / "tests/interop/peers"
-# Seconds until something that should happen counts as not happening; a wait ends as soon as it has.
-PATIENCE = 15.0
-# Of a peer that has its whole life to begin, with other tests beside it.
-START = 60.0
+STRING_HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
+ANSWERS = ["answer " + ("yes", "no")[number % 2] for number in range(5)]
 
 
-def wait_until(predicate: Callable[[], object], what: str, patience: float = PATIENCE) -> None:
-    """Returns as soon as predicate() is true; fails after `patience` seconds, saying what did not happen."""
-    end = time.monotonic() + patience
-    while not predicate():
-        if time.monotonic() > end:
-            raise AssertionError(f"{what}: not within {patience:g} s")
-        time.sleep(0.01)
+def ours(namespace: Namespace, *words: str) -> Program:
+    """Our program."""
+    return namespace.start(sys.executable, str(PROGRAMS / "roslet_graph.py"), *words, name="ours" + words[0])
 
 
-class Peer:
-    """A program of one of the peers: "roslet", "kilted", "jazzy" or "cyclone". `words` follow it: the node's name, and for
-    roslet its namespace and network; without any, it has a node in its children only."""
-
-    def __init__(self, namespace: Namespace, kind: str, *words: str, **environment: str) -> None:
-        self.kind = kind
-        self.node = "/" + words[0] if words else ""
-        program = {"roslet": "roslet_ros2.py", "cyclone": "cyclone_ros2.py"}.get(kind, "rclpy_ros2.py")
-        python = sys.executable if kind == "roslet" else str(peers.require(kind))
-        self.errors = namespace.folder / f"{kind}-{len(namespace.programs)}-{time.monotonic_ns()}.err"
-        with self.errors.open("wb") as errors:
-            self.process = namespace.popen(
-                [python, str(PROGRAMS / program), *words],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=errors,
-                **environment,
-            )
-        self._answers: queue.SimpleQueue[str] = queue.SimpleQueue()
-        threading.Thread(target=self._listen, daemon=True).start()
-        self.ask("process", patience=START)
-
-    def _listen(self) -> None:
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
-            self._answers.put(line.decode())
-        self._answers.put("")
-
-    def tell(self, command: str, *arguments: object) -> None:
-        """A command whose answer `answer` gets."""
-        assert self.process.stdin is not None
-        self.process.stdin.write((json.dumps([command, *arguments]) + "\n").encode())
-        self.process.stdin.flush()
-
-    def answer(self, patience: float = PATIENCE) -> Any:
-        try:
-            line = self._answers.get(timeout=patience)
-        except queue.Empty:
-            raise AssertionError(f"{self.kind} does not answer: {self.log()}") from None
-        if not line:
-            raise AssertionError(f"{self.kind} has ended: {self.log()}")
-        verdict, value = json.loads(line)
-        assert verdict == "ok", f"{self.kind}: {value}"
-        return value
-
-    def ask(self, command: str, *arguments: object, patience: float = 30.0) -> Any:
-        """What the program answers to a command."""
-        self.tell(command, *arguments)
-        return self.answer(patience)
-
-    def wait(self, expected: object, command: str, *arguments: object, patience: float = PATIENCE) -> None:
-        """Until it answers so."""
-        found = None
-        end = time.monotonic() + patience
-        while True:
-            found = self.ask(command, *arguments)
-            if found == expected:
-                return
-            if time.monotonic() > end:
-                raise AssertionError(f"{self.kind}: {command} {arguments}: {found}, not {expected}")
-            time.sleep(0.01)
-
-    def log(self) -> str:
-        return self.errors.read_text(errors="replace")[-4000:]
-
-    def quit(self) -> None:
-        """Let it end by itself."""
-        if self.process.poll() is None:
-            assert self.process.stdin is not None
-            self.process.stdin.close()
-            self.process.wait(10)
+def theirs(namespace: Namespace, peer: str, role: str, count: int) -> Program:
+    """A peer that serves or calls /ask."""
+    program = "cyclone_rmw.py" if peer == "cyclone" else "rclpy_rtps.py"
+    return namespace.start(
+        str(peers.require(peer)), str(PROGRAMS / program), role, str(count), name=f"{peer}_{role}"
+    )
 
 
-class Host:
-    """A namespace with peers, all of which end with it."""
-
-    def __init__(self, folder: pathlib.Path, **environment: str) -> None:
-        self.namespace = Namespace(folder)
-        self.environment = environment
-
-    def __enter__(self) -> Host:
-        self.namespace.__enter__()
-        return self
-
-    def __exit__(self, *exception: Any) -> None:
-        self.namespace.__exit__(*exception)
-
-    def peer(self, kind: str, *words: str, **environment: str) -> Peer:
-        return Peer(self.namespace, kind, *words, **{**self.environment, **environment})
+def last(lines: list[str], what: str) -> str | None:
+    """The newest of a program's lines of one kind."""
+    return next((line for line in reversed(lines) if line.split()[0] == what), None)
 
 
-class Pair:
-    """Who talks and who listens in a file's tests: one of them is roslet."""
+def check_graph(folder: pathlib.Path, peer: str) -> None:
+    """The peer lists our node, endpoints, QoS and hashes, and we it; a second after the end neither lists the other."""
+    with Namespace(folder) as namespace:
+        talker = ours(namespace, "talker")
+        talker.wait_until(lambda lines: lines, 20, "ready")
+        words = ["/robot/ours", "/chatter", "/ask"]
+        witness = namespace.start(
+            str(peers.require(peer)), str(PROGRAMS / "rclpy_graph.py"), *words, name="witness"
+        )
+        _, publisher, subscription = talker.lines()[0].split()
+        what = f"ours /robot std_msgs/msg/String {STRING_HASH} RELIABLE"
+        expected = [
+            "nodes /robot/ours /; /witness /",
+            f"publishers {what} TRANSIENT_LOCAL {publisher}",
+            f"subscriptions {what} VOLATILE {subscription}",
+            "types ['std_srvs/srv/SetBool']",
+            "of [('/chatter', ['std_msgs/msg/String'])]",
+        ]
+        witness.wait_until(
+            lambda lines: all(last(lines, line.split()[0]) == line for line in expected),
+            20,
+            "\n".join(expected),
+        )
+        talker.wait_for("nodes /robot/ours /; /witness /")
+        talker.wait_for("subscribed /witnessed")
+        begin = time.monotonic()
+        talker.process.send_signal(signal.SIGTERM)
+        gone = ["nodes /witness /", "publishers ", "subscriptions ", "types None"]
+        witness.wait_until(
+            lambda lines: all(last(lines, line.split()[0]) == line for line in gone), 20, "\n".join(gone)
+        )
+        # A second is promised; the rest is for a busy machine.
+        assert time.monotonic() - begin < 2.0
+        again = ours(namespace, "server")
+        again.wait_for("nodes /robot/ours /; /witness /")
+        witness.process.send_signal(signal.SIGTERM)
+        again.wait_until(
+            lambda lines: last(lines, "nodes") == "nodes /robot/ours /", 5, "the peer's node is gone"
+        )
 
-    def __init__(self, host: Host, talker: str, listener: str) -> None:
-        self.host = host
-        self.talker = host.peer(talker, "talker")
-        self.listener = host.peer(listener, "listener")
+
+def check_server(folder: pathlib.Path, *clients: str) -> None:
+    """Clients, all at once, each get their answers from our server, and nothing else."""
+    with Namespace(folder) as namespace:
+        server = ours(namespace, "server")
+        server.wait_for("ready")
+        programs = [theirs(namespace, peer, "client", len(ANSWERS)) for peer in clients]
+        for program in programs:
+            assert [line for line in program.finish() if line != "ready"] == ANSWERS
+        assert len([line for line in server.lines() if line.startswith("asked")]) == len(ANSWERS) * len(
+            programs
+        )
+
+
+def check_client(folder: pathlib.Path, peer: str) -> None:
+    """Our client gets its answers from a peer's server, which was there before, or comes later."""
+    with Namespace(folder) as namespace:
+        server = theirs(namespace, peer, "server", 2 * len(ANSWERS))
+        server.wait_for("ready")
+        for _ in range(2):
+            lines = ours(namespace, "client", str(len(ANSWERS))).finish()
+            assert [line for line in lines if line.startswith("answer")] == ANSWERS
+        server.finish()
+        later = ours(namespace, "client", str(len(ANSWERS)))
+        later.wait_for("ready")
+        theirs(namespace, peer, "server", len(ANSWERS)).wait_for("ready")
+        assert [line for line in later.finish() if line.startswith("answer")] == ANSWERS

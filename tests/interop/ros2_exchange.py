@@ -7,7 +7,7 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
-from interop.ros2 import Pair, Peer, wait_until
+from interop.ros2_peers import Pair, Peer, wait_until
 
 STRING, UINT32 = "std_msgs/msg/String", "std_msgs/msg/UInt32"
 _numbers = itertools.count()

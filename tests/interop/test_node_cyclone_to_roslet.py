@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from interop import ros2_exchange as exchange
-from interop.ros2 import Host, Pair
+from interop.ros2_peers import Host, Pair
 
 
 @pytest.fixture(scope="module")

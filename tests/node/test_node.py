@@ -100,8 +100,6 @@ def test_ros_master_uri_names_the_master(make: Nodes, master: MasterServer) -> N
         arguments=[f"__master:={node.master_uri}"],
     )
     assert other.master_uri == node.master_uri == f"http://127.0.0.1:{master.port}"
-    with pytest.raises(roslet.Unsupported):
-        roslet.Node("c")
 
 
 # -- the graph and parameters

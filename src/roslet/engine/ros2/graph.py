@@ -5,7 +5,7 @@ is, with `channel` "".
 """
 
 from roslet.engine.ros2.user_data import value_of
-from roslet.names import REPLY, REQUEST, TOPIC, ros_service_type, ros_topic, ros_type
+from roslet.names import REPLY, REQUEST, TOPIC, dds_topic, ros_service_type, ros_topic, ros_type
 from roslet.record import Record
 
 TYPE_CHECKING = False
@@ -196,7 +196,10 @@ class Graph:
         `channel` TOPIC, REQUEST or REPLY, "" for those that are not of ROS, None for all.
         """
         found = []
-        for one in self._endpoints.values():
+        among = self._endpoints
+        if topic is not None and channel is not None:
+            among = self._by_topic.get(dds_topic(channel, topic) if channel else topic, {})
+        for one in among.values():
             if topic is not None and one.name != topic:
                 continue
             if channel is not None and one.channel != channel:

@@ -10,10 +10,14 @@ import time
 from roslet.errors import InvalidName, Unsupported
 from roslet.names import REQUEST, TOPIC, Ros2Arguments, dds_topic, dds_type, parse_ros2_network, resolve_ros2
 from roslet.node.network import Network, own_classes
+from roslet.node.ros2 import descriptions
 from roslet.node.ros2 import qos as presets
+from roslet.node.ros2.parameter_files import overrides_of
+from roslet.node.ros2.parameters import NodeParameters
 from roslet.node.ros2.process import join
 from roslet.node.ros2.services import Ros2Client, Ros2Service
 from roslet.node.ros2.topics import Ros2Publisher, Ros2Subscription, pair, unpair
+from roslet.wire.tcpros import MAX_FRAME
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -67,6 +71,7 @@ class Ros2Network(Network):
         self._subscriptions: list[Ros2Subscription] = []
         self.services_made: list[Ros2Service] = []
         self.clients: list[Ros2Client] = []
+        self._clock: Ros2Subscription | None = None
 
     def open(self) -> None:
         self.process = join(self.reactor, self._settings, self.arguments.enclave or "/", self.node._note)
@@ -86,8 +91,12 @@ class Ros2Network(Network):
         return self.process.shell.context.graph
 
     def begin(self) -> None:
+        overrides = overrides_of(self.arguments.overrides, self.base_name, self.name)
         if self.arguments.switches.get("rosout-logs", True):
             self.node.log._publisher = self.publisher("/rosout", "rcl_interfaces/msg/Log", presets.ROSOUT)
+        self.parameters = NodeParameters(self, overrides)
+        if self.parameters.declare("start_type_description_service", True, read_only=True):
+            descriptions.offer(self)
 
     def say_goodbye(self) -> None:
         waiting = [one for one in self._publishers if one._writer is not None and one._writer.proxies]
@@ -121,6 +130,24 @@ class Ros2Network(Network):
 
     def resolve_service(self, name: str) -> str:
         return resolve_ros2(name, self.base_name, self.namespace, self.arguments.remappings, REQUEST)
+
+    def own_service(self, name: str) -> str:
+        """The full name of a service of the node itself."""
+        return self.resolve_service("~/" + name)
+
+    def follow_clock(self, simulated: bool) -> None:
+        """Go by /clock, or by the wall clock again."""
+        clock = self.node.clock
+        if simulated and self._clock is None:
+            clock.simulate()
+            self._clock = self.subscription(
+                self.resolve("/clock"), "rosgraph_msgs/msg/Clock", None, presets.CLOCK, MAX_FRAME, False
+            )
+            self._clock.in_loop(lambda message: clock.advance(message.clock.sec, message.clock.nanosec))
+        elif not simulated and self._clock is not None:
+            self._clock.close()
+            self._clock = None
+            clock.wall()
 
     def now(self) -> int:
         """The wall clock, nanoseconds of the Unix epoch."""
@@ -308,4 +335,25 @@ class Ros2Network(Network):
     # -- parameters
 
     def declare_parameter(self, name: str, default: Any, **description: Any) -> Any:
-        raise NotImplementedError
+        return self.parameters.declare(name, default, **description)
+
+    def get_parameter(self, name: str) -> Any:
+        return self.parameters.get(name)
+
+    def set_parameter(self, name: str, value: Any) -> None:
+        self.parameters.set(name, value)
+
+    def delete_parameter(self, name: str) -> None:
+        self.parameters.undeclare(name)
+
+    def has_parameter(self, name: str) -> bool:
+        return self.parameters.store.has(name)
+
+    def parameter_names(self) -> list[str]:
+        return self.parameters.store.names()
+
+    def on_parameter(self, name: str, callback: Callable[[Any], object]) -> Any:
+        return self.parameters.on(name, callback)
+
+    def off_parameter(self, name: str, callback: Callable[[Any], object]) -> None:
+        self.parameters.off(name, callback)

@@ -48,7 +48,7 @@ class Ros2Service(Service):
     ) -> None:
         super().__init__(node, name, service_type, handler)
         self._network = network
-        self._background = background
+        self.background = background
         self._requests: deque[tuple[Any, Reply]] = deque()
         self._due = False
         reactor = network.reactor
@@ -82,7 +82,7 @@ class Ros2Service(Service):
     def receive(self, body: Any, reply: Reply) -> None:
         """A request, from the network or from a client of this process; `reply` gets the bytes of the response. With the
         reactor's lock held."""
-        if self._background:
+        if self.background:
             self._respond(body, reply)
             return
         if len(self._requests) >= MAX_REQUESTS:

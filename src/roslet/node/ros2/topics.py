@@ -194,7 +194,7 @@ class Ros2Publisher(_Endpoint, Publisher):
         """Say that this publisher is alive although it has nothing to publish; for liveliness "manual_by_topic"."""
         writer = self._open()
         with self._shell.reactor.lock:
-            writer.assert_liveliness()
+            writer.assert_liveliness(self._network.reactor.now())
             self._shell.flush()
 
     def _flushed(self) -> bool:
@@ -248,6 +248,7 @@ class Ros2Subscription(_Endpoint, Subscription):
         self._listeners = []
         self._policies = to_dds(qos)
         self._max_message = max_message
+        self._background = False
         self._sources: tuple[Ros2Publisher, ...] = ()  # of this process
         self._reader: Reader | None = network.create_reader(self, self._sample)
 
@@ -272,6 +273,17 @@ class Ros2Subscription(_Endpoint, Subscription):
         elif size > LARGE:
             keep_large_blocks()
         self._deliver_later(payload, (proxy.guid, value.sequence, time, self._network.now()))
+
+    def in_loop(self, callback: Callable[[Any], object]) -> None:
+        """Call `callback` in the loop whoever runs it, with the reactor's lock held: it must be quick and of ours."""
+        self._callback = callback
+        self._background = True
+
+    def _deliver_later(self, message: Any, link: Any = None) -> None:
+        if self._background:
+            self._deliver(message, link)
+        else:
+            super()._deliver_later(message, link)
 
     def _deliver(self, message: Any, link: Any) -> None:
         if link is not None:

@@ -1,0 +1,270 @@
+"""What a writer sends besides its samples in passing: bulk, fragments, gaps, and what a reader asks for again.
+
+RTPS 2.3, 8.4.9.2 (reliable writer), 8.4.14.1 (fragments).
+"""
+
+from roslet.wire.rtps import number_set, times
+from roslet.wire.rtps.data import FLAG_K, FLAG_Q, Preface
+from roslet.wire.rtps.data_frag import FLAG_K as FRAGMENT_OF_KEY
+from roslet.wire.rtps.data_frag import DataFrag
+from roslet.wire.rtps.gap import Gap
+from roslet.wire.rtps.guid import ENTITYID_UNKNOWN
+from roslet.wire.rtps.heartbeat_frag import HeartbeatFrag
+from roslet.wire.rtps.info_ts import InfoTimestamp
+from roslet.wire.rtps.submessage import FLAG_E
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from roslet.engine.rtps.common import Common
+    from roslet.engine.rtps.history import Change
+    from roslet.engine.rtps.outbox import Address, Datagram, Flow
+    from roslet.engine.rtps.reader_proxy import ReaderProxy
+    from roslet.engine.rtps.writer import Writer
+    from roslet.wire.rtps.ack_nack import AckNack
+    from roslet.wire.rtps.nack_frag import NackFrag
+
+# Seconds in which a second request for the same sample by the same reader is taken for an echo of the first.
+RESEND_SUPPRESSION = 0.005
+# Samples of which that is remembered, for one reader; beyond, an echo costs a datagram.
+MAX_RESENT = 1024
+
+
+class Repairs:
+    """Belongs to one writer."""
+
+    def __init__(self, writer: "Writer", common: "Common", flow: "Flow") -> None:
+        self._writer = writer
+        self._common = common
+        self._outbox = common.outbox
+        self._flow = flow
+        self._paced: dict[int, int] = {}  # sequence number -> runs of its fragments that the flow still holds
+        self._lossless = True  # nobody asked for a part of the bulk under way again
+
+    @property
+    def busy(self) -> bool:
+        """Whether bulk waits for its turn."""
+        return bool(self._paced)
+
+    # -- to all, or one
+
+    def send_bulk(self, change: "Change", proxy: "ReaderProxy | None") -> None:
+        """A large sample, to all readers (`proxy` None) or one."""
+        self._pace(change, proxy, None, self._writer.addresses if proxy is None else proxy.addresses)
+
+    def _pace(
+        self,
+        change: "Change",
+        proxy: "ReaderProxy | None",
+        numbers: "list[int] | None",
+        addresses: "tuple[Address, ...]",
+        repair: bool = False,
+    ) -> None:
+        self._paced[change.sequence] = self._paced.get(change.sequence, 0) + 1
+        make = self._fragments if len(change.payload) > self._writer.fragment_size else self._whole
+        self._flow.add(make(change, proxy, numbers, addresses), repair)
+
+    def _front(self, change: "Change", proxy: "ReaderProxy | None") -> "tuple[bytes, bytes]":
+        stamp = bytes(InfoTimestamp(change.time).emit())
+        if proxy is None:
+            return self._common.header + stamp, ENTITYID_UNKNOWN
+        return self._common.header + proxy.info_dst + stamp, proxy.guid[12:]
+
+    def _whole(
+        self,
+        change: "Change",
+        proxy: "ReaderProxy | None",
+        numbers: "list[int] | None",
+        addresses: "tuple[Address, ...]",
+    ) -> "Iterator[Datagram]":
+        """The one datagram of a sample that fits, with a heartbeat behind it."""
+        writer = self._writer
+        superseded = self._superseded(change)
+        if not superseded:
+            size = len(change.inline_qos) + len(change.payload)
+            pad = bytes(-size & 3)
+            front = self._preface(proxy, change, size + len(pad)) + change.inline_qos
+            if writer.any_reliable:
+                reader_id = ENTITYID_UNKNOWN if proxy is None else proxy.guid[12:]
+                pad += writer.heartbeat(reader_id, False, change.sequence).emit()
+            yield (front, change.payload, pad), addresses
+        self._done(change)
+        if superseded and writer.any_reliable:
+            yield from self._ask(change, proxy, addresses)
+
+    def _fragments(
+        self,
+        change: "Change",
+        proxy: "ReaderProxy | None",
+        numbers: "list[int] | None",
+        addresses: "tuple[Address, ...]",
+    ) -> "Iterator[Datagram]":
+        size = self._writer.fragment_size
+        total = len(change.payload)
+        count = (total + size - 1) // size
+        view = memoryview(change.payload)
+        front, reader_id = self._front(change, proxy)
+        flags = FRAGMENT_OF_KEY if change.flags & FLAG_K else 0
+        entity_id, sequence, said = self._writer.entity_id, change.sequence, change.inline_qos
+        for number in numbers if numbers is not None else range(1, count + 1):
+            if number > count or self._superseded(change):
+                break
+            part = view[(number - 1) * size : number * size]
+            piece = DataFrag(reader_id, entity_id, sequence, number, 1, size, total, part, said, flags)
+            yield (front + piece.emit_front(), part), addresses
+        self._done(change)
+        if self._writer.any_reliable:
+            yield from self._ask(change, proxy, addresses, count)
+
+    def _ask(
+        self,
+        change: "Change",
+        proxy: "ReaderProxy | None",
+        addresses: "tuple[Address, ...]",
+        count: int = 0,
+    ) -> "Iterator[Datagram]":
+        """Heartbeats of no more than this sample: the readers would ask for those that wait behind it."""
+        writer = self._writer
+        reader_id = ENTITYID_UNKNOWN if proxy is None else proxy.guid[12:]
+        parts = [self._common.header, proxy.info_dst if proxy is not None else b""]
+        if count:
+            told = HeartbeatFrag(reader_id, writer.entity_id, change.sequence, count, writer.next_count())
+            parts.append(bytes(told.emit()))
+        parts.append(bytes(writer.heartbeat(reader_id, False, change.sequence).emit()))
+        yield (b"".join(parts),), addresses
+
+    def _done(self, change: "Change") -> None:
+        left = self._paced[change.sequence] - 1
+        if left:
+            self._paced[change.sequence] = left
+        else:
+            del self._paced[change.sequence]
+        if self._writer.any_reliable:
+            self._flow.mark(change.sequence)
+
+    def _superseded(self, change: "Change") -> bool:
+        """Whether nobody needs the rest of a sample: acknowledged, expired, or overwritten while it waited its turn."""
+        writer = self._writer
+        if writer.keeps or writer.any_reliable:
+            return writer.history.get(change.sequence) is None
+        return not writer.history.keep_all and writer.last - change.sequence >= writer.history.depth
+
+    def acknowledged(self, sequence: int) -> None:
+        """Every reliable reader has the samples up to this one."""
+        if self._flow.acknowledged(sequence):
+            if self._lossless:
+                self._flow.widen()
+            self._lossless = True
+
+    # -- to one reader
+
+    def introduce(self, proxy: "ReaderProxy") -> None:
+        """Tell a reader where we are; it asks for what it lacks. What is not for it is a gap."""
+        writer = self._writer
+        parts: list[bytes | bytearray] = [self._common.header, proxy.info_dst]
+        if 1 < proxy.start <= writer.last + 1:
+            parts.append(Gap(proxy.guid[12:], writer.entity_id, 1, number_set.NumberSet(proxy.start)).emit())
+        parts.append(writer.heartbeat(proxy.guid[12:], False).emit())
+        self._outbox.send(tuple(parts), proxy.addresses)
+
+    def tell_skipped(self, only: bytes, last: int) -> None:
+        """A GAP, to reader `only` or to all, over what went to others only, up to number `last`."""
+        writer = self._writer
+        for proxy in writer.proxies.values() if not only else (writer.proxies[only],):
+            if proxy.sent < last and proxy.reliable:
+                skipped = number_set.NumberSet(last + 1)
+                message = Gap(proxy.guid[12:], writer.entity_id, proxy.sent + 1, skipped)
+                self._outbox.send((self._common.header, proxy.info_dst, message.emit()), proxy.addresses)
+            proxy.sent = writer.last
+
+    def send_to(self, proxy: "ReaderProxy", number: int, addresses: "tuple[Address, ...]") -> None:
+        """Sample `number`, if we have it and it is for this reader."""
+        change = self._writer.history.get(number)
+        if change is None or change.to not in (b"", proxy.guid):
+            return
+        if self._writer.is_bulk(change.payload):
+            self._pace(change, proxy, None, addresses, True)
+        else:
+            self.send_change(proxy, change, addresses)
+
+    def send_change(self, proxy: "ReaderProxy", change: "Change", addresses: "tuple[Address, ...]") -> None:
+        """A sample that fits a datagram, at once."""
+        size = len(change.inline_qos) + len(change.payload)
+        front = self._preface(proxy, change, size)
+        self._outbox.send((front, change.inline_qos, change.payload), addresses)
+
+    def _preface(self, proxy: "ReaderProxy | None", change: "Change", size: int) -> bytes:
+        if proxy is None:
+            preface = self._writer.preface
+        else:
+            if proxy.preface is None:
+                proxy.preface = Preface(
+                    self._common.header, self._writer.entity_id, proxy.guid[12:], proxy.info_dst
+                )
+            preface = proxy.preface
+        seconds, fraction = times.split(change.time)
+        flags = change.flags | FLAG_E | (FLAG_Q if change.inline_qos else 0)
+        return preface.emit(change.sequence, size, seconds, fraction, flags)
+
+    # -- what is asked for
+
+    def send_again(
+        self, proxy: "ReaderProxy", value: "AckNack", now: float, addresses: "tuple[Address, ...]"
+    ) -> bool:
+        """What an ACKNACK asks for; whether it asks for anything that exists."""
+        writer = self._writer
+        asked = [number for number in value.state.numbers() if number <= writer.last]
+        if not asked:
+            return False
+        absent = []
+        lost = False
+        for number in asked:
+            if number in self._paced:
+                continue
+            change = writer.history.get(number)
+            if number < proxy.start or change is None or change.to not in (b"", proxy.guid):
+                absent.append(number)
+            elif now - proxy.resent.get(number, -1.0) >= RESEND_SUPPRESSION:
+                if len(proxy.resent) > MAX_RESENT:
+                    proxy.resent.clear()
+                proxy.resent[number] = now
+                lost = lost or writer.is_bulk(change.payload)
+                self.send_to(proxy, number, addresses)
+        if lost:
+            self._lossless = False
+            self._flow.narrow()
+        if absent:
+            self._send_gaps(proxy, absent, addresses)
+        if not self._paced:
+            # Behind what it asked for, so that the next request need not wait for a timer.
+            beat = writer.heartbeat(proxy.guid[12:], False)
+            self._outbox.send((self._common.header, proxy.info_dst, beat.emit()), addresses)
+        return True
+
+    def send_fragments_again(
+        self, proxy: "ReaderProxy", value: "NackFrag", now: float, addresses: "tuple[Address, ...]"
+    ) -> None:
+        """What a NACK_FRAG asks for."""
+        change = self._writer.history.get(value.sequence)
+        if change is None or change.to not in (b"", proxy.guid):
+            self._send_gaps(proxy, [value.sequence], addresses)
+            return
+        if value.sequence in self._paced:
+            # What it lacks may be on its way; the run ends with another heartbeat.
+            self._common.count("nack-frag-early")
+        elif value.state.bits:
+            self._lossless = False
+            self._flow.narrow()
+            self._pace(change, proxy, value.state.numbers(), addresses, True)
+        self._writer.ask_soon(now)
+
+    def _send_gaps(self, proxy: "ReaderProxy", absent: "list[int]", addresses: "tuple[Address, ...]") -> None:
+        """GAPs over numbers, in order: the run they begin with as a range, the rest as a set."""
+        start = base = absent[0]
+        at = 0
+        while at < len(absent) and absent[at] == base:
+            base += 1
+            at += 1
+        message = Gap(proxy.guid[12:], self._writer.entity_id, start, number_set.of(base, absent[at:]))
+        self._outbox.send((self._common.header, proxy.info_dst, message.emit()), addresses)
