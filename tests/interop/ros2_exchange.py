@@ -127,7 +127,10 @@ def compatible(pair: Pair, offered: dict[str, Any], requested: dict[str, Any]) -
     heard, wrong = pair.listener.ask("heard", topic)
     assert wrong == []
     assert heard == sorted(set(heard))
-    if requested["durability"] == "volatile":
+    if pair.talker.kind == "cyclone" and offered["durability"] == "transient_local":
+        # Cyclone sends what it keeps to whoever asks, and volatile readers of rclpy hear that too.
+        assert heard[0] >= 2
+    elif requested["durability"] == "volatile":
         assert heard[0] >= 5
     if requested["reliability"] == "reliable":
         assert [one for one in heard if one >= 5] == list(range(5, 25))
