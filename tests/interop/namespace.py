@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 from types import TracebackType
+from typing import IO, Any
 
 import pytest
 
@@ -20,6 +21,8 @@ _ROUTE = "ip link set lo multicast on && ip route add 239.0.0.0/8 dev lo"
 
 class Program:
     """A command in the namespace; its standard output goes to a file, so that it never blocks."""
+
+    end = signal.SIGTERM
 
     def __init__(
         self, command: list[str], environment: dict[str, str], folder: pathlib.Path, name: str
@@ -53,13 +56,24 @@ class Program:
         return self.lines()
 
 
+class Piped:
+    """A command in the namespace that its owner talks to; it is not waited for in the end."""
+
+    end = signal.SIGKILL
+
+    def __init__(
+        self, command: list[str], stdin: int, stdout: int, stderr: IO[bytes], environment: dict[str, str]
+    ) -> None:
+        self.process = subprocess.Popen(command, stdin=stdin, stdout=stdout, stderr=stderr, env=environment)
+
+
 class Namespace:
     """A context manager: `start` runs programs in it, all of which end with it. `route`: whether multicast has one."""
 
     def __init__(self, folder: pathlib.Path, route: bool = True) -> None:
         self.folder = folder
         self._setup = f"ip link set lo up && {_ROUTE if route else 'true'} && echo up && exec sleep 600"
-        self.programs: list[Program] = []
+        self.programs: list[Program | Piped] = []
 
     def __enter__(self) -> Namespace:
         unshare = (
@@ -100,21 +114,29 @@ class Namespace:
             assert time.monotonic() < end, f"{name} did not come up"
             time.sleep(0.02)
 
-    def start(self, *command: str, name: str = "", **environment: str) -> Program:
+    def environment(self, **changes: str) -> dict[str, str]:
+        """What a program in it starts with: nothing of ROS but domain 0, and UDP only."""
         values = {key: value for key, value in os.environ.items() if not key.startswith("ROS_")}
-        values.update(FASTDDS_BUILTIN_TRANSPORTS="UDPv4", ROS_DOMAIN_ID="0")
-        values.update(environment)
+        return {**values, "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4", "ROS_DOMAIN_ID": "0", **changes}
+
+    def start(self, *command: str, name: str = "", **environment: str) -> Program:
         name = name or f"program{len(self.programs)}"
-        program = Program([*self._enter(), *command], values, self.folder, name)
+        program = Program([*self._enter(), *command], self.environment(**environment), self.folder, name)
         self.programs.append(program)
         return program
+
+    def popen(self, command: list[str], stdin: int, stdout: int, stderr: IO[bytes], **environment: str) -> Any:
+        """A program whose input and output are the caller's."""
+        program = Piped([*self._enter(), *command], stdin, stdout, stderr, self.environment(**environment))
+        self.programs.append(program)
+        return program.process
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         for program in self.programs:
             if program.process.poll() is None:
-                program.process.send_signal(signal.SIGTERM)
+                program.process.send_signal(program.end)
         for program in self.programs:
             try:
                 program.process.wait(5)

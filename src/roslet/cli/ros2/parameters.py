@@ -6,7 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 from roslet.cli.options import CommandError, full_name
 from roslet.cli.parameters import NotSet, ParameterStore
-from roslet.engine.ros2.parameters import BYTE_ARRAY, DOUBLE, DOUBLE_ARRAY, INTEGER, INTEGER_ARRAY, TYPES, Parameter
+from roslet.engine.ros2.parameters import (
+    BYTE_ARRAY,
+    DOUBLE,
+    DOUBLE_ARRAY,
+    INTEGER,
+    INTEGER_ARRAY,
+    TYPES,
+    Parameter,
+)
 from roslet.node.ros2.parameters import from_value, to_parameter
 
 if TYPE_CHECKING:
