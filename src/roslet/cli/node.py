@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from roslet.cli.graph import open_graph, open_ros1
 from roslet.cli.options import ALL, UNREACHABLE, CommandError, Group, count, full_name, positive

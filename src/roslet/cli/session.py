@@ -46,9 +46,12 @@ class Session:
         """The node goes."""
         raise NotImplementedError
 
-    def listen(self, topic: str, callback: Callable[[Any], object], depth: int, qos: Sequence[str]) -> Tap:
-        """Call `callback(RawMessage)` for each message of a topic, whatever its type. `qos` is what --qos said. On ROS 2
-        nobody can subscribe before the type is known: that waits until the topic is there."""
+    def listen(
+        self, topic: str, callback: Callable[[Any], object], depth: int, qos: Sequence[str], kept: bool = True
+    ) -> Tap:
+        """Call `callback(RawMessage)` for each message of a topic, whatever its type. `qos` is what --qos said; without
+        `kept` messages of before are not wanted. On ROS 2 nobody can subscribe before the type is known: that waits until
+        the topic is there."""
         raise NotImplementedError
 
     def reader(self) -> Reader:
