@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from types import TracebackType
 
+    from typing_extensions import Self
+
     from roslet.cli.reader import Reader
     from roslet.node.node import Node
     from roslet.node.topics import Publisher
@@ -34,7 +36,7 @@ class Session:
     node: Node
     graph: Graph
 
-    def __enter__(self) -> Session:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
