@@ -73,7 +73,7 @@ def echo() -> None:
     seen = 0
     last = -1
 
-    def sink(proxy, value, time) -> None:  # type: ignore[no-untyped-def]
+    def sink(proxy, value, stamp) -> None:  # type: ignore[no-untyped-def]
         nonlocal seen, last
         data = value.payload
         if data[0] == 0:
@@ -144,30 +144,38 @@ class Measure:
     def __init__(self, words: list[str]) -> None:
         self.got = 0
         self.answer = b""
+        self.ping: bytearray | None = None
+        self.taken: list[float] = []
+        self.begin = 0.0
         self.child = start("echo", *words)
         self.end = End("ping", "pong", self.sink)
         if not self.end.reactor.run_until(self.end.matched, PATIENCE):
             raise TimeoutError("the other end did not come")
         self.end.reactor.run_until(lambda: False, 0.3)
 
-    def sink(self, proxy, value, time) -> None:  # type: ignore[no-untyped-def]
-        """An answer."""
+    def sink(self, proxy, value, stamp) -> None:  # type: ignore[no-untyped-def]
+        """An answer; in a ping-pong the next ping goes out at once, as from a node's callback."""
         self.answer = bytes(value.payload[:8])
         self.got += 1
+        if self.ping is not None:
+            now = time.perf_counter()
+            self.taken.append((now - self.begin) * 1e6)
+            self.begin = now
+            self.end.write(self.ping)
 
     def rtt(self, size: int) -> list[float]:
         """Round trips, one in flight, in microseconds."""
-        data = payload(size)
-        taken = []
-        until = time.perf_counter() + SECONDS
-        while time.perf_counter() < until:
-            self.got = 0
-            begin = time.perf_counter()
-            self.end.write(data)
-            if not self.end.reactor.run_until(lambda: self.got, PATIENCE):
-                raise TimeoutError(f"{size} octets: {self.end.domain.participant.counters}")
-            taken.append((time.perf_counter() - begin) * 1e6)
-        return taken[len(taken) // 10 :]
+        self.taken = []
+        self.ping = payload(size)
+        self.begin = time.perf_counter()
+        self.end.write(self.ping)
+        self.end.reactor.run_until(lambda: False, SECONDS)
+        self.ping = None
+        before = self.got
+        self.end.reactor.run_until(lambda: self.got > before, 1.0)
+        if not self.taken:
+            raise TimeoutError(f"{size} octets: {self.end.domain.participant.counters}")
+        return self.taken[len(self.taken) // 10 :]
 
     def rate(self, size: int) -> float:
         """Samples a second that came, in order and none missing."""

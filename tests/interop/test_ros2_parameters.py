@@ -10,7 +10,7 @@ import pytest
 
 import peers
 from interop.namespace import Namespace
-from roslet.engine.ros2 import parameters as p
+from roslet import errors
 from roslet.engine.ros2.parameters import Descriptor, Parameter, Parameters
 from roslet.errors import InvalidName
 
@@ -68,10 +68,10 @@ OPERATIONS: list[list[Any]] = [
 ]
 OVERRIDES: dict[str, Any] = {"over": 5, "wrongly": "text", "never": 1}
 ERRORS = {
-    p.ParameterNotDeclared: "ParameterNotDeclaredException",
-    p.ParameterUninitialized: "ParameterUninitializedException",
-    p.ParameterAlreadyDeclared: "ParameterAlreadyDeclaredException",
-    p.ParameterReadOnly: "ParameterImmutableException",
+    errors.ParameterNotDeclared: "ParameterNotDeclaredException",
+    errors.ParameterUninitialized: "ParameterUninitializedException",
+    errors.ParameterAlreadyDeclared: "ParameterAlreadyDeclaredException",
+    errors.ParameterReadOnly: "ParameterImmutableException",
     InvalidName: "InvalidParameterException",
     ValueError: "ValueError",
     TypeError: "TypeError",
@@ -105,7 +105,7 @@ def run(store: Parameters, operation: list[Any]) -> Any:
 def ours(store: Parameters, operation: list[Any]) -> Any:
     try:
         return run(store, operation)
-    except p.ParameterRefused as error:
+    except errors.ParameterRefused as error:
         return "InvalidParameterTypeException" if error.wrong_type else "InvalidParameterValueException"
     except tuple(ERRORS) as error:
         return ERRORS[type(error)]

@@ -4,6 +4,7 @@ import array
 
 import pytest
 
+from roslet import errors
 from roslet.engine.ros2 import parameters as p
 from roslet.engine.ros2.parameters import Descriptor, Parameter, Parameters, type_of
 from roslet.errors import InvalidName
@@ -64,13 +65,13 @@ def test_declaring_gives_value_type_and_override() -> None:
     assert store.declare("b", 1).value == 5
     assert store.get("b").value == 5
     assert store.declare("b2", ["x"], p.STRING_ARRAY).value == ["x"]
-    with pytest.raises(p.ParameterRefused, match="its type is integer, not string") as raised:
+    with pytest.raises(errors.ParameterRefused, match="its type is integer, not string") as raised:
         store.declare("c", 1)
     assert raised.value.wrong_type
     assert not store.has("c")
     assert store.declare("c", 1, ignore_override=True).value == 1
     assert store.declare("e", [1.0]) == Parameter("e", [], p.DOUBLE_ARRAY)
-    with pytest.raises(p.ParameterAlreadyDeclared):
+    with pytest.raises(errors.ParameterAlreadyDeclared):
         store.declare("a", 2)
     with pytest.raises(InvalidName):
         store.declare("", 1)
@@ -85,7 +86,7 @@ def test_declaring_gives_value_type_and_override() -> None:
 def test_a_type_alone_leaves_it_uninitialized_until_it_is_set() -> None:
     store = Parameters()
     store.declare("a", type=p.DOUBLE)
-    with pytest.raises(p.ParameterUninitialized):
+    with pytest.raises(errors.ParameterUninitialized):
         store.get("a")
     assert store.get_or("a", 7) == 7
     assert store.get_type("a") == p.NOT_SET
@@ -101,9 +102,9 @@ def test_what_was_not_declared_is_refused_or_declared_as_it_comes() -> None:
     store = Parameters()
     store.declare("a", 1)
     for ask in (store.get, store.get_type, store.describe, store.undeclare):
-        with pytest.raises(p.ParameterNotDeclared):
+        with pytest.raises(errors.ParameterNotDeclared):
             ask("x")
-    with pytest.raises(p.ParameterNotDeclared, match="x, y"):
+    with pytest.raises(errors.ParameterNotDeclared, match="x, y"):
         store.set_atomically([Parameter("a", 2), Parameter("x", 1), Parameter("y", 1)])
     assert store.get("a").value == 1
     store.allow_undeclared = True
@@ -133,9 +134,9 @@ def test_read_only_parameters_stay() -> None:
     store = Parameters()
     store.declare("a", 1, descriptor=Descriptor(read_only=True, description="d", constraints="c"))
     assert store.set([Parameter("a", 2)]) == [(False, "a: it is read-only")]
-    with pytest.raises(p.ParameterReadOnly):
+    with pytest.raises(errors.ParameterReadOnly):
         store.undeclare("a")
-    with pytest.raises(p.ParameterReadOnly):
+    with pytest.raises(errors.ParameterReadOnly):
         store.set_descriptor("a", Descriptor())
     assert store.describe("a") == Descriptor("a", p.INTEGER, "d", "c", True)
     store.declare("b", 1)
@@ -232,7 +233,7 @@ def test_callbacks_choose_refuse_and_hear() -> None:
     store.remove_pre_set(nothing)
     with pytest.raises(ValueError):
         store.remove_on_set(lambda given: (True, ""))
-    with pytest.raises(p.ParameterRefused, match="c: unlucky"):
+    with pytest.raises(errors.ParameterRefused, match="c: unlucky"):
         store.declare("c", 13)
     assert not store.has("c")
 
@@ -267,7 +268,7 @@ def test_a_new_descriptor_keeps_the_value_or_takes_another() -> None:
     store = Parameters()
     store.declare("a", 5)
     assert store.set_descriptor("a", Descriptor(integer_range=(0, 10, 1))).value == 5
-    with pytest.raises(p.ParameterRefused, match="5 is out of range: from 0 to 3"):
+    with pytest.raises(errors.ParameterRefused, match="5 is out of range: from 0 to 3"):
         store.set_descriptor("a", Descriptor(integer_range=(0, 3, 1)))
     assert store.set_descriptor("a", Descriptor(integer_range=(0, 3, 1)), 2).value == 2
     assert store.describe("a").integer_range == (0, 3, 1)

@@ -177,8 +177,11 @@ class Matching:
         remote = self._remotes.get(prefix)
         if remote is None:
             return ()
-        own = addresses_of(found.unicast or found.multicast, remote.host, self._networks)
-        return own or remote.default
+        return (
+            addresses_of(found.unicast, remote.host, self._networks)
+            or remote.default
+            or addresses_of(found.multicast, remote.host, self._networks)
+        )
 
     def _vendor(self, found: "EndpointData") -> bytes:
         remote = self._remotes.get(found.guid[:12])

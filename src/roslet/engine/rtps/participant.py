@@ -165,6 +165,11 @@ class Participant:
         """The oldest event not yet taken, or None."""
         return self._events.pop(0) if self._events else None
 
+    @property
+    def pending_events(self) -> bool:
+        """Whether there are events to take."""
+        return bool(self._events)
+
     def take_events(self) -> "list[Any]":
         """All events not yet taken."""
         found = self._events

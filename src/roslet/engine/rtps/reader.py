@@ -36,6 +36,10 @@ if TYPE_CHECKING:
 
 # Seconds between two requests to one writer: what was asked for is on its way meanwhile.
 NACK_INTERVAL = 0.005
+# Seconds until what was asked for and did not come is asked for again without a heartbeat, doubled up to the longest while
+# nothing comes: the request or all of the answer may be lost, and the writer's next heartbeat too.
+RETRY_DELAY = 0.05
+RETRY_LONGEST = 0.8
 # Seconds until a writer that has not told where it is gets asked, doubled each time, and how often.
 HELLO_DELAY = 0.1
 HELLO_TIMES = 8
@@ -63,10 +67,13 @@ class WriterProxy:
         "last",
         "lifespan",
         "nacked_at",
+        "nacked_next",
         "next",
         "plain",
         "reliable",
         "reply",
+        "retry",
+        "retry_at",
         "synced",
         "vendor",
     )  # fmt: skip
@@ -89,6 +96,9 @@ class WriterProxy:
         self.frag_count = 0
         self.ack_at: float | None = None
         self.nacked_at = -1.0
+        self.nacked_next = 0  # what `next` was then
+        self.retry = RETRY_DELAY
+        self.retry_at: float | None = None
         self.hellos = 0
         self.hello_at: float | None = None
         self.reply: tuple[Address, ...] = ()  # where the next answer goes, if an INFO_REPLY said so
@@ -453,6 +463,10 @@ class Reader:
         if proxy.ack_at is not None and now >= proxy.ack_at:
             proxy.ack_at = None
             self._answer(proxy, now)
+        elif proxy.retry_at is not None and now >= proxy.retry_at:
+            proxy.retry_at = None
+            if proxy.next <= proxy.last:
+                self._answer(proxy, now)
         elif proxy.hello_at is not None and now >= proxy.hello_at:
             proxy.hellos += 1
             delay = HELLO_DELAY * (1 << proxy.hellos)
@@ -460,7 +474,7 @@ class Reader:
             # Fast DDS answers at once only to this form, which the specification does not have.
             base = 0 if proxy.vendor == VENDORID_EPROSIMA and proxy.next == 1 else proxy.next
             self._send_acknack(proxy, base, [], False)
-        for at in (proxy.ack_at, proxy.hello_at):
+        for at in (proxy.ack_at, proxy.retry_at, proxy.hello_at):
             if at is not None:
                 proxy.alarm.set(at)
 
@@ -478,6 +492,11 @@ class Reader:
                 partial.append((sequence, lacks))
         if missing or partial:
             proxy.nacked_at = now
+            proxy.retry = (
+                RETRY_DELAY if proxy.next != proxy.nacked_next else min(2 * proxy.retry, RETRY_LONGEST)
+            )
+            proxy.nacked_next = proxy.next
+            proxy.retry_at = now + proxy.retry
         self._send_acknack(proxy, proxy.next, missing, not missing and not partial)
         for sequence, lacks in partial:
             proxy.frag_count += 1

@@ -20,6 +20,7 @@ class ReaderProxy:
         "frag_count",
         "guid",
         "info_dst",
+        "next_preface",
         "preface",
         "reliable",
         "resent",
@@ -47,7 +48,8 @@ class ReaderProxy:
         self.count = -1
         self.frag_count = -1
         self.info_dst = bytes(info_dst.InfoDestination(remote.guid[:12]).emit())
-        self.preface: Preface | None = None
+        self.preface: Preface | None = None  # of a datagram with one sample for it
+        self.next_preface: Preface | None = None  # of one more sample in a datagram
         self.resent: dict[int, float] = {}
 
 

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 # Seconds in which a second request for the same sample by the same reader is taken for an echo of the first.
 RESEND_SUPPRESSION = 0.005
+# Octets of a datagram of several samples: what Ethernet takes in one frame.
+PACKED = 1400
 # Samples of which that is remembered, for one reader; beyond, an echo costs a datagram.
 MAX_RESENT = 1024
 
@@ -178,15 +180,33 @@ class Repairs:
                 self._outbox.send((self._common.header, proxy.info_dst, message.emit()), proxy.addresses)
             proxy.sent = writer.last
 
-    def send_to(self, proxy: "ReaderProxy", number: int, addresses: "tuple[Address, ...]") -> None:
-        """Sample `number`, if we have it and it is for this reader."""
-        change = self._writer.history.get(number)
-        if change is None or change.to not in (b"", proxy.guid):
-            return
-        if self._writer.is_bulk(change.payload):
-            self._pace(change, proxy, None, addresses, True)
-        else:
-            self.send_change(proxy, change, addresses)
+    def send_all(self, proxy: "ReaderProxy", numbers: "list[int]", addresses: "tuple[Address, ...]") -> None:
+        """Those samples that we have and that are for this reader, as many in a datagram as fit."""
+        writer = self._writer
+        parts: list[bytes | bytearray] = []
+        size = 0
+        for number in numbers:
+            change = writer.history.get(number)
+            if change is None or change.to not in (b"", proxy.guid):
+                continue
+            if writer.is_bulk(change.payload):
+                self._pace(change, proxy, None, addresses, True)
+                continue
+            body = len(change.inline_qos) + len(change.payload)
+            need = writer.preface.size + body
+            if parts and size + need > PACKED:
+                self._outbox.send((b"".join(parts),), addresses)
+                parts = []
+            if not parts:
+                parts = [self._common.header, proxy.info_dst]
+                size = len(parts[0]) + len(parts[1])
+            if proxy.next_preface is None:
+                proxy.next_preface = Preface(b"", writer.entity_id, proxy.guid[12:])
+            parts += [_emit(proxy.next_preface, change, body), change.inline_qos, change.payload]
+            # What is no multiple of 4 must be the last: the payload would end with its padding.
+            size += need if not body & 3 else PACKED
+        if parts:
+            self._outbox.send((b"".join(parts),), addresses)
 
     def send_change(self, proxy: "ReaderProxy", change: "Change", addresses: "tuple[Address, ...]") -> None:
         """A sample that fits a datagram, at once."""
@@ -196,16 +216,12 @@ class Repairs:
 
     def _preface(self, proxy: "ReaderProxy | None", change: "Change", size: int) -> bytes:
         if proxy is None:
-            preface = self._writer.preface
-        else:
-            if proxy.preface is None:
-                proxy.preface = Preface(
-                    self._common.header, self._writer.entity_id, proxy.guid[12:], proxy.info_dst
-                )
-            preface = proxy.preface
-        seconds, fraction = times.split(change.time)
-        flags = change.flags | FLAG_E | (FLAG_Q if change.inline_qos else 0)
-        return preface.emit(change.sequence, size, seconds, fraction, flags)
+            return _emit(self._writer.preface, change, size)
+        if proxy.preface is None:
+            proxy.preface = Preface(
+                self._common.header, self._writer.entity_id, proxy.guid[12:], proxy.info_dst
+            )
+        return _emit(proxy.preface, change, size)
 
     # -- what is asked for
 
@@ -218,6 +234,7 @@ class Repairs:
         if not asked:
             return False
         absent = []
+        again = []
         lost = False
         for number in asked:
             if number in self._paced:
@@ -230,7 +247,8 @@ class Repairs:
                     proxy.resent.clear()
                 proxy.resent[number] = now
                 lost = lost or writer.is_bulk(change.payload)
-                self.send_to(proxy, number, addresses)
+                again.append(number)
+        self.send_all(proxy, again, addresses)
         if lost:
             self._lossless = False
             self._flow.narrow()
@@ -268,3 +286,9 @@ class Repairs:
             at += 1
         message = Gap(proxy.guid[12:], self._writer.entity_id, start, number_set.of(base, absent[at:]))
         self._outbox.send((self._common.header, proxy.info_dst, message.emit()), addresses)
+
+
+def _emit(preface: Preface, change: "Change", size: int) -> bytes:
+    seconds, fraction = times.split(change.time)
+    flags = change.flags | FLAG_E | (FLAG_Q if change.inline_qos else 0)
+    return preface.emit(change.sequence, size, seconds, fraction, flags)

@@ -158,9 +158,10 @@ class Writer:
         self.last = sequence
         if self._period is not None:
             self._note_deadline(key, flags, now)
-        if self._wrote is not None:
-            self._wrote(now)
+        if self.manual:
             self._assert(now)
+            if self._wrote is not None:
+                self._wrote(now)
         if not self._addresses:
             return sequence
         if to or self._directed:
@@ -268,8 +269,7 @@ class Writer:
         self._least = min(self._least, proxy.acked) if proxy.reliable else self._least
         self.proxies[remote.guid] = proxy
         if late:
-            for number in self.history.numbers():
-                self._repairs.send_to(proxy, number, proxy.addresses)
+            self._repairs.send_all(proxy, self.history.numbers(), proxy.addresses)
         if proxy.reliable:
             self._repairs.introduce(proxy)
             if late and len(self.history) and self._heartbeat_at is None:

@@ -7,11 +7,13 @@ import os
 import threading
 import time
 
+from roslet.engine.ros2.actions import RESULT_TIMEOUT
 from roslet.errors import InvalidName, Unsupported
 from roslet.names import REQUEST, TOPIC, Ros2Arguments, dds_topic, dds_type, parse_ros2_network, resolve_ros2
 from roslet.node.network import Network, own_classes
 from roslet.node.ros2 import descriptions
 from roslet.node.ros2 import qos as presets
+from roslet.node.ros2.actions import ActionClient, ActionServer
 from roslet.node.ros2.parameter_files import overrides_of
 from roslet.node.ros2.parameters import NodeParameters
 from roslet.node.ros2.process import join
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
     from roslet.io.ros2 import Ros2Shell
     from roslet.node.node import Node
     from roslet.node.qos import QoS
+    from roslet.node.ros2.actions import ServerGoal
 
 # Seconds that closing a node gives reliable subscribers to acknowledge what was published.
 CLOSE_TIMEOUT = 0.25
@@ -190,8 +193,8 @@ class Ros2Network(Network):
         message_type: Any,
         callback: Callable[..., object] | None,
         qos: QoS,
-        max_message: int,
-        with_link: bool,
+        max_message: int = MAX_FRAME,
+        with_link: bool = False,
     ) -> Ros2Subscription:
         if message_type in (None, "*"):
             kind, type_name = None, self._type_of(topic)
@@ -283,7 +286,7 @@ class Ros2Network(Network):
         qos: QoS = presets.SERVICES,
         background: bool = False,
     ) -> Ros2Service:
-        kind = own_classes("ros2", service_type, services=True)
+        kind = own_classes("ros2", service_type, "service")
         service = Ros2Service(self, self.node, name, kind, handler, qos, background)
         self.services_made.append(service)
         return service
@@ -291,9 +294,45 @@ class Ros2Network(Network):
     def client(
         self, name: str, service_type: Any, persistent: bool = False, qos: QoS = presets.SERVICES
     ) -> Ros2Client:
-        client = Ros2Client(self, self.node, name, own_classes("ros2", service_type, services=True), qos)
+        client = Ros2Client(self, self.node, name, own_classes("ros2", service_type, "service"), qos)
         self.clients.append(client)
         return client
+
+    # -- actions
+
+    def action_server(
+        self,
+        name: str,
+        action_type: Any,
+        handler: Callable[[ServerGoal], Any] | None = None,
+        accepted: Callable[[ServerGoal], object] | None = None,
+        on_goal: Callable[[Any], object] | None = None,
+        on_cancel: Callable[[ServerGoal], object] | None = None,
+        result_timeout: float | None = RESULT_TIMEOUT,
+    ) -> ActionServer:
+        """`name` is full."""
+        kind = own_classes("ros2", action_type, "action")
+        return ActionServer(self, name, kind, handler, accepted, on_goal, on_cancel, result_timeout)
+
+    def action_client(self, name: str, action_type: Any) -> ActionClient:
+        """`name` is full."""
+        return ActionClient(self, name, own_classes("ros2", action_type, "action"))
+
+    def stamp(self, nanoseconds: int) -> Any:
+        """A builtin_interfaces/Time."""
+        sec, nanosec = divmod(nanoseconds, 1_000_000_000)
+        return own_classes("ros2", "builtin_interfaces/msg/Time")(sec=sec, nanosec=nanosec)
+
+    def goal_info(self, uuid: bytes, stamp: int) -> Any:
+        """An action_msgs/GoalInfo."""
+        made = own_classes("ros2", "action_msgs/msg/GoalInfo")(stamp=self.stamp(stamp))
+        made.goal_id.uuid = uuid
+        return made
+
+    def goal_status(self, uuid: bytes, stamp: int, status: int) -> Any:
+        """An action_msgs/GoalStatus."""
+        kind = own_classes("ros2", "action_msgs/msg/GoalStatus")
+        return kind(goal_info=self.goal_info(uuid, stamp), status=status)
 
     # -- the graph
 

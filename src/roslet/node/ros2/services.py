@@ -7,6 +7,7 @@ from collections import deque
 from roslet.engine.ros2.services import ServiceClient, ServiceServer
 from roslet.engine.rtps.history import HistoryFull
 from roslet.errors import RosletError, ServiceFailed
+from roslet.node.future import Future
 from roslet.node.ros2 import qos as presets
 from roslet.node.ros2.qos import to_dds
 from roslet.node.services import Client, Service
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 
     from roslet.engine.ros2.services import Request
     from roslet.engine.rtps.reader import WriterProxy
-    from roslet.node.future import Future
     from roslet.node.node import Node
     from roslet.node.qos import QoS
     from roslet.node.ros2.network import Ros2Network
@@ -105,6 +105,16 @@ class Ros2Service(Service):
             response = self._answer(memoryview(body), None)
         except ServiceFailed:
             return  # it is logged and counted; ROS 2 has no answer for it
+        if isinstance(response, Future):
+            response.add_done_callback(lambda done: self._respond_late(done, reply))
+        else:
+            reply(response)
+
+    def _respond_late(self, done: Future[Any], reply: Reply) -> None:
+        try:
+            response = self._answer_of(done)
+        except ServiceFailed:
+            return
         reply(response)
 
     def _reply(self, request: Request, response: bytes) -> None:

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 # Bytes that a publisher's own buffer grows to; a larger message is gathered into a buffer of its own, which the writer
 # keeps without a further copy.
 MAX_BUFFER = 60_000
+# Events of a publisher or subscription that nobody listens to yet; older ones are forgotten.
+MAX_EARLY = 100
 
 
 class MessageInfo:
@@ -63,14 +65,25 @@ class _Endpoint:
     node: Node
     _network: Ros2Network
     _listeners: list[Callable[[events.Event], object]]
+    _early: deque[events.Event]
     _on_connect: list[Callable[[str], None]]
     _on_disconnect: list[Callable[[str], None]]
 
     def on_event(self, function: Callable[[events.Event], object]) -> None:
-        """Call `function(event)` inside spin for what `roslet.node.events` has: matches, incompatible QoS and the like."""
-        self._listeners.append(function)
+        """Call `function(event)` inside spin for what `roslet.node.events` has: matches, incompatible QoS and the like.
+
+        The first function is also told what came before it, the last MAX_EARLY: a peer that was there first matches, or
+        does not, while the publisher or subscription is being made.
+        """
+        with self._network.reactor.lock:
+            self._listeners.append(function)
+            while self._early:
+                self.node._call_back(function, self._early.popleft())
 
     def _tell(self, event: events.Event) -> None:
+        """With the reactor's lock held."""
+        if not self._listeners:
+            self._early.append(event)
         for function in self._listeners:
             self.node._call_back(function, event)
 
@@ -116,6 +129,7 @@ class Ros2Publisher(_Endpoint, Publisher):
         super().__init__(node, topic, message_type, qos)
         self._network = network
         self._listeners = []
+        self._early = deque(maxlen=MAX_EARLY)
         self._dropped = 0
         self._policies = to_dds(qos)
         # For local subscriptions that come late.
@@ -246,6 +260,7 @@ class Ros2Subscription(_Endpoint, Subscription):
         self.type_name = type_name
         self._network = network
         self._listeners = []
+        self._early = deque(maxlen=MAX_EARLY)
         self._policies = to_dds(qos)
         self._max_message = max_message
         self._background = False
