@@ -77,6 +77,7 @@ class Flow:
         self._sent = 0  # octets ever
         self._landed = 0  # of those, the ones that everybody has
         self._marks: list[tuple[int, int]] = []  # sample and _sent behind it
+        self.high = 0.0  # the most that was under way since the window last changed
 
     def add(self, datagrams: "Iterator[Datagram]", repair: bool = False) -> None:
         """Send many, made when their time comes."""
@@ -108,6 +109,7 @@ class Flow:
             self._sent += size
             sent += size
         self._under_way += sent
+        self.high = max(self.high, self._under_way)
         if self.waiting or self.repairs:
             # Not before a good part of the window is free: each look costs a turn of the loop.
             pace = SLOW_PACE if self._marks else PACE
@@ -124,28 +126,31 @@ class Flow:
             self._landed = self._marks.pop(0)[1]
         self._marks.append((sequence, self._sent))
 
-    def acknowledged(self, sequence: int) -> bool:
-        """Everybody has the samples up to this one. Whether that is news."""
+    def acknowledged(self, sequence: int) -> None:
+        """Everybody has the samples up to this one."""
         marks = self._marks
         count = 0
         while count < len(marks) and marks[count][0] <= sequence:
             count += 1
         if not count:
-            return False
+            return
         landed = marks[count - 1][1]
         del marks[:count]
         self._under_way = max(0.0, self._under_way - (landed - self._landed))
         self._landed = landed
         self.resume = 0.0
-        return True
 
     def widen(self) -> None:
-        """Bulk arrived without loss."""
+        """What was under way arrived without loss. Where that was little it says nothing of more."""
+        if self.high < self.window // 2:
+            return
+        self.high = 0.0
         self.window = min(2 * self.window, self._ceiling)
         if self.window >= self._ceiling:
             self._ceiling = min(self._ceiling + WINDOW, MAX_WINDOW)
 
     def narrow(self) -> None:
         """Some was lost: smaller steps from here, but not below the first."""
+        self.high = 0.0
         self._ceiling = max(self.window * 3 // 4, WINDOW)
         self.window = max(self.window // 2, WINDOW)

@@ -42,7 +42,8 @@ class Repairs:
         self._outbox = common.outbox
         self._flow = flow
         self._paced: dict[int, int] = {}  # sequence number -> runs of its fragments that the flow still holds
-        self._lossless = True  # nobody asked for a part of the bulk under way again
+        self._lossless = True  # nobody asked again for what was sent up to here:
+        self._round = 0
 
     @property
     def busy(self) -> bool:
@@ -154,10 +155,19 @@ class Repairs:
 
     def acknowledged(self, sequence: int) -> None:
         """Every reliable reader has the samples up to this one."""
-        if self._flow.acknowledged(sequence):
+        self._flow.acknowledged(sequence)
+        if sequence >= self._round:
             if self._lossless:
                 self._flow.widen()
             self._lossless = True
+            self._round = self._writer.last
+
+    def _lost(self) -> None:
+        """Once for all that was under way at a time: what one overrun took is reported piece by piece."""
+        if self._lossless:
+            self._lossless = False
+            self._flow.narrow()
+            self._round = self._writer.last
 
     # -- to one reader
 
@@ -235,7 +245,6 @@ class Repairs:
             return False
         absent = []
         again = []
-        lost = False
         for number in asked:
             if number in self._paced:
                 continue
@@ -246,12 +255,10 @@ class Repairs:
                 if len(proxy.resent) > MAX_RESENT:
                     proxy.resent.clear()
                 proxy.resent[number] = now
-                lost = lost or writer.is_bulk(change.payload)
                 again.append(number)
         self.send_all(proxy, again, addresses)
-        if lost:
-            self._lossless = False
-            self._flow.narrow()
+        if again:
+            self._lost()
         if absent:
             self._send_gaps(proxy, absent, addresses)
         if not self._paced:
@@ -272,8 +279,7 @@ class Repairs:
             # What it lacks may be on its way; the run ends with another heartbeat.
             self._common.count("nack-frag-early")
         elif value.state.bits:
-            self._lossless = False
-            self._flow.narrow()
+            self._lost()
             self._pace(change, proxy, value.state.numbers(), addresses, True)
         self._writer.ask_soon(now)
 

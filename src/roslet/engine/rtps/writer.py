@@ -40,6 +40,8 @@ HEARTBEAT_LONGEST = 0.25
 FRAGMENT_SIZE = 65000
 # Samples from this size on go within the window of the writer's flow; smaller ones never wait.
 BULK = 8192
+# Octets that a datagram takes of a socket's buffer besides its payload, on Linux.
+OVERHEAD = 768
 # Payloads up to this size are copied behind their header: one buffer is sent faster than two.
 JOINED = 2048
 
@@ -61,7 +63,7 @@ class Writer:
         self.reliable = self.qos.reliable
         self.keeps = self.qos.durability >= TRANSIENT_LOCAL
         self.keyed = guids.is_keyed(endpoint.guid) and not guids.is_builtin(endpoint.guid)
-        backlog = self.qos.history[0] == KEEP_ALL and not self.keeps
+        self._blocks = backlog = self.qos.history[0] == KEEP_ALL and not self.keeps
         self.history = History(
             self.qos,
             min(limits.backlog_bytes, limits.history_bytes) if backlog else limits.history_bytes,
@@ -101,15 +103,26 @@ class Writer:
     # -- what its owner does
 
     def full(self, size: int = 0, key: bytes = b"") -> bool:
-        """Whether `write` of `size` octets (of instance `key`) would raise HistoryFull.
+        """Whether `write` of `size` octets (of instance `key`) would raise HistoryFull, or run over what the readers of this
+        KEEP_ALL writer have been seen to take.
 
         Once it was, by this or by `write`, a WriterReady event tells when there is room; how long to wait for it is the
         owner's affair (RELIABILITY's max_blocking_time).
         """
         if self._stale:
             self._refresh()
-        if not (self.keeps or self._any_reliable) or not self.history.full(size, key):
+        if not (self.keeps or self._any_reliable):
             return False
+        history = self.history
+        if not history.full(size, key):
+            if not self._blocks or size >= BULK or not len(history):
+                return False
+            # Small samples never wait in the flow; but who is ready to wait can do so before they overrun the readers.
+            under_way = history.bytes + OVERHEAD * len(history)
+            if under_way > self._flow.high:
+                self._flow.high = under_way
+            if under_way < self._flow.window:
+                return False
         self._wanted = True
         return True
 
@@ -418,7 +431,7 @@ class Writer:
         else:
             self.history.remove_through(least)
         self._repairs.acknowledged(least)
-        if self._wanted and not self.history.full(0):
+        if self._wanted and not self.full(0):
             self._wanted = False
             self._common.deliver(WriterReady(self.entity_id))
 
