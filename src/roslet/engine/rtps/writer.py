@@ -91,9 +91,7 @@ class Writer:
         self.preface = Preface(common.header, self.entity_id)
         self._addresses: tuple[Address, ...] = ()
         self._any_reliable = False
-        self.tells = (
-            False  # whether all reliable readers are roslet's, which say how far a large sample has come
-        )
+        self._tells = False
         self._stale = False  # whether the three above are to be found anew
         self._directed = False  # whether any sample was for one reader alone
         self._wanted = False  # whether somebody waits for room
@@ -307,7 +305,7 @@ class Writer:
         self._addresses = addresses_for_all(proxies)
         reliable = [one for one in proxies if one.reliable]
         self._any_reliable = bool(reliable)
-        self.tells = self._any_reliable and not [one for one in reliable if one.vendor != VENDORID_ROSLET]
+        self._tells = self._any_reliable and not [one for one in reliable if one.vendor != VENDORID_ROSLET]
         if not self._any_reliable:
             self._heartbeat_at = None
 
@@ -324,6 +322,13 @@ class Writer:
         if self._stale:
             self._refresh()
         return self._any_reliable
+
+    @property
+    def tells(self) -> bool:
+        """Whether all who acknowledge are roslet's: they say how far a large sample has come."""
+        if self._stale:
+            self._refresh()
+        return self._tells
 
     # -- heartbeats
 
