@@ -37,7 +37,8 @@ if TYPE_CHECKING:
 # Seconds between two requests to one writer: what was asked for is on its way meanwhile.
 NACK_INTERVAL = 0.005
 # Seconds until what was asked for and did not come is asked for again without a heartbeat, doubled up to the longest while
-# nothing comes: the request or all of the answer may be lost, and the writer's next heartbeat too.
+# nothing comes: the request or all of the answer may be lost, and the writer's next heartbeat too. Of roslet's writers
+# only: 8.4.2.3 has readers answer heartbeats, and others may hold to it.
 RETRY_DELAY = 0.05
 RETRY_LONGEST = 0.8
 # Seconds until a writer that has not told where it is gets asked, doubled each time, and how often.
@@ -496,7 +497,8 @@ class Reader:
                 RETRY_DELAY if proxy.next != proxy.nacked_next else min(2 * proxy.retry, RETRY_LONGEST)
             )
             proxy.nacked_next = proxy.next
-            proxy.retry_at = now + proxy.retry
+            if proxy.vendor == VENDORID_ROSLET:
+                proxy.retry_at = now + proxy.retry
         if proxy.asked or missing or not partial:
             proxy.asked = False
             self._send_acknack(proxy, missing, not lacking)
