@@ -36,7 +36,7 @@ from roslet.wire.rtps import (
 )
 from roslet.wire.rtps.data import FLAG_D, FLAG_K
 from roslet.wire.rtps.endpoint_data import EndpointData
-from roslet.wire.rtps.guid import ENTITYID_UNKNOWN, GUIDPREFIX_UNKNOWN
+from roslet.wire.rtps.guid import ENTITYID_UNKNOWN, ENTITYKIND_BUILTIN, GUIDPREFIX_UNKNOWN
 from roslet.wire.rtps.participant_message import (
     KIND_AUTOMATIC_LIVELINESS_UPDATE,
     KIND_MANUAL_LIVELINESS_UPDATE,
@@ -177,7 +177,7 @@ class Participant:
             self._time = None
             self._now = now
             remote = self.spdp.remotes.get(head.guid_prefix)
-            if remote is not None:
+            if remote is not None and source[0] in remote.hosts:
                 remote.heard = now
             handlers = self._handlers
             for kind, flags, at, end in submessage.walk(view):
@@ -479,6 +479,8 @@ class Participant:
 
     def _data(self, view: memoryview, at: int, end: int, flags: int) -> None:
         value = data.parse(view, at, end, flags)
+        if value.writer_id[3] >= ENTITYKIND_BUILTIN and not self._believed():
+            return
         routes = self._by_writer.get(self._source + value.writer_id)
         if routes is not None:
             if self._liveliness.manual:
@@ -494,7 +496,17 @@ class Participant:
         else:
             self._count("data-of-unmatched-writer")
 
+    def _believed(self) -> bool:
+        """Whether discovery from this source may come from where it came: else anybody could redirect or end a peer."""
+        remote = self.spdp.remotes.get(self._source)
+        if remote is None or remote.believes(self._host, self._now):
+            return True
+        self._count("discovery-from-another-address")
+        return False
+
     def _targets(self, value: "Any") -> "list[tuple[Reader, WriterProxy]]":
+        if value.writer_id[3] >= ENTITYKIND_BUILTIN and not self._believed():
+            return []
         routes = self._by_writer.get(self._source + value.writer_id)
         if routes is None:
             self._count("submessage-of-unmatched-writer")
@@ -526,6 +538,8 @@ class Participant:
     def _acknack(self, view: memoryview, at: int, end: int, flags: int) -> None:
         value = ack_nack.parse(view, at, end, flags)
         writer = self._all_writers.get(value.writer_id)
+        if value.writer_id[3] >= ENTITYKIND_BUILTIN and not self._believed():
+            return
         if writer is None:
             self._count("acknack-of-unknown-writer")
         else:

@@ -44,6 +44,8 @@ QUICK = 5
 QUICK_PERIOD = 0.1
 # Addresses of one peer that everything is sent to, where none is known to be the right one.
 MAX_ADDRESSES = 4
+# Only this machine sends from here.
+LOOPBACK = "127.0.0.1"
 
 
 def addresses_of(locators: "tuple[Locator, ...]", heard_from: str) -> "tuple[Address, ...]":
@@ -60,10 +62,20 @@ class RemoteParticipant:
         self.heard = now
         self.update(value, host)
 
+    def believes(self, host: str, now: float) -> bool:
+        """Whether discovery in its name may come from this address: where it was first heard, where it says it is, or this
+        machine. One that has been silent for half its lease may have moved."""
+        if host in self.hosts:
+            return True
+        return self.lease is not None and now - self.heard > self.lease / 2
+
     def update(self, value: "ParticipantData", host: str) -> None:
         self.data = value
         self.host = host
         self.lease = value.lease / 1e9 if value.lease < INFINITE else None
+        locators = value.metatraffic_unicast + value.default_unicast
+        self.hosts = {host, LOOPBACK}
+        self.hosts.update([one.host for one in locators if one.usable])
         self.metatraffic = addresses_of(value.metatraffic_unicast or value.metatraffic_multicast, host)
         self.default = addresses_of(value.default_unicast or value.default_multicast, host)
 
@@ -178,7 +190,7 @@ class Spdp:
             self._deliver(ParticipantDiscovered(found))
         elif remote is not None:
             remote.heard = now
-            if found != remote.data:
+            if found != remote.data or host not in remote.hosts:
                 remote.update(found, host)
                 self._discovered(remote, now)
                 self._deliver(ParticipantDiscovered(found))
