@@ -1,4 +1,7 @@
-"""A network namespace for one test: loopback with multicast and nothing else, so that no test meets another's peers."""
+"""Network namespaces for one test: hosts of its own, so that no test meets another's peers.
+
+A Namespace has loopback and nothing else, until `connect` lays a cable between two of them.
+"""
 
 from __future__ import annotations
 
@@ -72,14 +75,29 @@ class Namespace:
             pytest.skip(f"no network namespace: {reason}")
         return self
 
+    @property
+    def pid(self) -> int:
+        """A process that lives in it, by which others find it."""
+        return self._holder.pid
+
+    def _enter(self) -> list[str]:
+        enter = ["nsenter", "--net", "--target", str(self.pid)]
+        return enter if os.geteuid() == 0 else [*enter, "--user", "--preserve-credentials"]
+
+    def run(self, command: str) -> str:
+        """What a short shell command prints in it; it must succeed."""
+        done = subprocess.run(
+            [*self._enter(), "sh", "-ec", command], capture_output=True, text=True, timeout=10, check=False
+        )
+        assert done.returncode == 0, f"{command}: {done.stderr}"
+        return done.stdout
+
     def start(self, *command: str, name: str = "", **environment: str) -> Program:
-        enter = ["nsenter", "--net", "--target", str(self._holder.pid)]
-        if os.geteuid() != 0:
-            enter += ["--user", "--preserve-credentials"]
         values = {key: value for key, value in os.environ.items() if not key.startswith("ROS_")}
-        values.update(FASTDDS_BUILTIN_TRANSPORTS="UDPv4", ROS_DOMAIN_ID="0", **environment)
+        values.update(FASTDDS_BUILTIN_TRANSPORTS="UDPv4", ROS_DOMAIN_ID="0")
+        values.update(environment)
         name = name or f"program{len(self.programs)}"
-        program = Program([*enter, *command], values, self.folder, name)
+        program = Program([*self._enter(), *command], values, self.folder, name)
         self.programs.append(program)
         return program
 
@@ -97,3 +115,21 @@ class Namespace:
                 program.process.wait(5)
         self._holder.kill()
         self._holder.communicate(timeout=5)
+
+
+def connect(one: Namespace, other: Namespace, cable: str, subnet: str) -> None:
+    """A cable of that name between two namespaces: addresses .1 and .2 of a subnet such as "10.0.1"."""
+    if os.geteuid() != 0:
+        pytest.skip("only root can lay a cable between two network namespaces")
+    one.run(f"ip link add name {cable} type veth peer name {cable} netns {other.pid}")
+    for end, number in ((one, 1), (other, 2)):
+        end.run(f"ip address add {subnet}.{number}/24 dev {cable} && ip link set {cable} up")
+
+
+def route(left: Namespace, router: Namespace, right: Namespace) -> None:
+    """Two hosts, 10.0.1.1 and 10.0.2.1, with a router in between that passes on what is not multicast."""
+    connect(left, router, "left", "10.0.1")
+    connect(right, router, "right", "10.0.2")
+    router.run("sysctl -qw net.ipv4.ip_forward=1")
+    left.run("ip route add default via 10.0.1.2")
+    right.run("ip route add default via 10.0.2.2")

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import roslet
-from nodes import Nodes, serve, wait_until
+from nodes import Nodes, entry_of, serve, wait_until
 from roslet.master.server import MasterServer
 
 
@@ -161,8 +161,8 @@ def test_simulated_time_may_jump_back(make: Nodes, simulated: SimulatedTime) -> 
 def test_a_broken_clock_message_is_counted_and_dropped(make: Nodes, simulated: SimulatedTime) -> None:
     node = make("a")
     assert simulated.publisher.wait_for_subscribers(2, 3)
-    link = simulated.publisher._entry.links[0]  # type: ignore[union-attr]
-    for one in simulated.publisher._entry.links:  # type: ignore[union-attr]
+    link = entry_of(simulated.publisher).links[0]
+    for one in entry_of(simulated.publisher).links:
         one.channel.sock.send(b"\x03\0\0\0abc")
     assert link is not None
     wait_until(lambda: node.counters.get("malformed-message") == 1, "it is counted")

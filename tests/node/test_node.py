@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 import roslet
-from nodes import Nodes, descriptors, serve, wait_until
+from nodes import Nodes, descriptors, ros1, serve, wait_until
 from roslet.master.server import MasterServer
 from roslet.node.values import parse_value
 
@@ -211,7 +211,7 @@ def test_callbacks_that_peers_cause_have_a_bound(make: Nodes) -> None:
     a.on_parameter("/p", lambda value: None)
     with a.reactor.lock:
         for index in range(module.MAX_CALLBACKS + 10):
-            a._engine.parameter_changed("/p", index)
+            ros1(a).engine.parameter_changed("/p", index)
     assert a.counters == {"too-many-callbacks": 10}
 
 
@@ -465,14 +465,14 @@ def test_a_host_that_is_a_name_is_looked_up_without_blocking(
     futures = []
     for index in range(20):
         with node.reactor.lock:
-            node._engine.call_slave(
+            ros1(node).engine.call_slave(
                 f"http://robot{index}:1/",
                 "getPid",
                 ["/a"],
                 lambda *given: futures.append(given[1]),
                 node.reactor.now(),
             )
-            node._update()
+            ros1(node).update()
     node.call_master("getPid")
     assert time.monotonic() - begin < 0.25
     assert sum(thread.name == "roslet-lookup" for thread in threading.enumerate()) <= 8

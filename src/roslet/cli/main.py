@@ -127,7 +127,11 @@ def _quit_on_sigterm() -> Any:
     """Make SIGTERM an exception; the handler to put back, None where this thread may not set one."""
 
     def terminated(number: int, frame: FrameType | None) -> None:
-        raise Terminated(TERMINATED)
+        interrupts = sys.modules.get(
+            "roslet.io.interrupts"
+        )  # where there is a node; it is not imported for less
+        if interrupts is None or not interrupts.put_off(number, frame):
+            raise Terminated(TERMINATED)
 
     try:
         return signal.signal(signal.SIGTERM, terminated)

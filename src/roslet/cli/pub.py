@@ -94,7 +94,5 @@ def _repeat(arguments: argparse.Namespace, node: Node, publisher: Publisher, end
 
 
 def _drain(node: Node, publisher: Publisher) -> None:
-    """Serve until every subscriber's queue is empty."""
-    entry = publisher._entry
-    if entry is not None:
-        node.reactor.run_until(lambda: not any(link.queue.bytes for link in entry.links), DRAIN)
+    """Serve until every subscriber has what was published."""
+    publisher.flush(DRAIN)

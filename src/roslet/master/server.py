@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from roslet.engine.ros1.rpc import CallFailed, RpcClient, RpcServer, answer_calls
 from roslet.errors import InvalidName, RosletError
+from roslet.io.interrupts import on_sigint
 from roslet.io.select import EXHAUSTED, listen, reactor, tune
 from roslet.io.streams import Stream, connect
 from roslet.master.core import Master, Notification
@@ -308,7 +309,7 @@ def run(host: str = "0.0.0.0", port: int = DEFAULT_PORT) -> int:
     server.call("setParam", "/roslet_master", "/run_id", str(uuid.uuid1()))
 
     # As Ctrl-C: a handler that only set a flag would not end the loop's sleep.
-    previous = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    previous = signal.signal(signal.SIGTERM, on_sigint)
     try:
         print(f"ROS_MASTER_URI={server.uri}", flush=True)
         loop.run_until(server.stopped.is_set)

@@ -7,7 +7,7 @@ import pytest
 from engine.rtps.network import Host, Network
 from roslet.engine.rtps import events
 from roslet.engine.rtps.history import HistoryFull
-from roslet.wire.rtps import qos
+from roslet.wire.rtps import locator, qos
 from roslet.wire.rtps.qos import Qos
 
 TYPE_CHECKING = False
@@ -507,3 +507,82 @@ def test_large_samples_that_were_overwritten_while_they_waited_are_not_sent() ->
         network.run(1)
         assert network.bytes - before < 8 * 130000
         assert writer._paced == {}
+
+
+def test_a_sink_gets_the_samples_in_order_instead_of_events() -> None:
+    network = Network(4, 0.2, 0.2, 0.2)
+    one, other = network.host(fragment_size=1000), network.host()
+    writer = one.participant.create_writer("t", "T", RELIABLE, 0.0)
+    got: Any = []
+
+    def sink(proxy: "Any", value: "Any", time: "int | None") -> None:
+        got.append((proxy.guid, value.sequence, bytes(value.payload), time))
+
+    reader = other.participant.create_reader("t", "T", RELIABLE, 0.0, sink=sink)
+    assert matched(network, writer, reader)
+    sizes = [12, 5000, 12, 12, 1001, 12]
+    for number, size in enumerate(sizes):
+        writer.write(body(number, size), network.now, time=1000 + number)
+    assert network.run(30, lambda: writer.acknowledged(len(sizes)))
+    assert got == [
+        (writer.data.guid, number + 1, body(number, size), 1000 + number) for number, size in enumerate(sizes)
+    ]
+    assert other.of(events.SampleReceived) == []
+
+
+def test_a_sample_for_one_reader_reaches_only_that_one_and_the_others_do_not_wait() -> None:
+    for loss in (0.0, 0.3):
+        network = Network(8, loss)
+        one = network.host(fragment_size=1000)
+        writer = one.participant.create_writer("t", "T", RELIABLE, 0.0)
+        others = [network.host() for _ in range(3)]
+        readers = [host.participant.create_reader("t", "T", RELIABLE, 0.0) for host in others]
+        assert network.run(30, lambda: len(writer.proxies) == 3 and all(one.proxies for one in readers))
+        expected: Any = [[], [], []]
+        for number in range(60):
+            turn = number % 5
+            size = 12 if number % 7 else 3000
+            if turn < 3:
+                assert writer.write(body(number, size), network.now, to=readers[turn].data.guid) == number + 1
+                expected[turn].append(number)
+            else:
+                writer.write(body(number, size), network.now)
+                for one_list in expected:
+                    one_list.append(number)
+            network.run(0.002)
+        begin = network.now
+        assert network.run(30, lambda: writer.acknowledged(60))
+        assert [numbers(host) for host in others] == expected
+        assert loss or network.now - begin < 0.1
+        for host in others:
+            assert host.of(events.SamplesLost) == []
+        assert writer.write(body(0), network.now, to=bytes(16)) == 0
+        assert writer.last == 60
+        assert one.participant.counters["write-to-unmatched-reader"] == 1
+
+
+def test_samples_for_one_reader_displace_only_each_other() -> None:
+    network = Network()
+    one, first, second = network.host(), network.host(), network.host()
+    writer = one.participant.create_writer("t", "T", RELIABLE.replace(history=(qos.KEEP_LAST, 1)), 0.0)
+    readers = [host.participant.create_reader("t", "T", RELIABLE, 0.0) for host in (first, second)]
+    assert network.run(30, lambda: len(writer.proxies) == 2 and all(reader.proxies for reader in readers))
+    network.run(1)
+    network.loss = 1.0
+    writer.write(body(1), network.now, to=readers[0].data.guid)
+    writer.write(body(2), network.now, to=readers[1].data.guid)
+    network.run(0.01)
+    network.loss = 0.0
+    assert network.run(10, lambda: writer.acknowledged(2))
+    assert (numbers(first), numbers(second)) == ([1], [2])
+
+
+def test_an_endpoint_may_have_a_locator_of_its_own() -> None:
+    network = Network()
+    one, other = network.host(), network.host()
+    writer = one.participant.create_writer("t", "T", RELIABLE, 0.0)
+    place = locator.udp4(other.address, 9999)
+    reader = other.participant.create_reader("t", "T", RELIABLE, 0.0, unicast=(place,))
+    assert matched(network, writer, reader)
+    assert writer.proxies[reader.data.guid].addresses == ((other.address, 9999),)
+    assert writer.proxies[reader.data.guid].data.unicast == (place,)

@@ -19,12 +19,20 @@ class HistoryFull(RosletError):
 
 
 class Change:
-    """One sample, or the end of an instance: `flags` as in DATA; `key` tells instances apart."""
+    """One sample, or the end of an instance: `flags` as in DATA; `key` tells instances apart; `to`: the one reader
+    that it is for, or nothing."""
 
-    __slots__ = ("expires", "flags", "inline_qos", "key", "payload", "sequence", "time")
+    __slots__ = ("expires", "flags", "inline_qos", "key", "payload", "sequence", "time", "to")
 
     def __init__(
-        self, sequence: int, payload: bytes, inline_qos: bytes, flags: int, time: int, key: bytes
+        self,
+        sequence: int,
+        payload: bytes,
+        inline_qos: bytes,
+        flags: int,
+        time: int,
+        key: bytes,
+        to: bytes = b"",
     ) -> None:
         self.sequence = sequence
         self.payload = payload
@@ -32,6 +40,7 @@ class Change:
         self.flags = flags
         self.time = time
         self.key = key
+        self.to = to
         self.expires = 0.0  # when LIFESPAN ends it, where the writer has one
 
 

@@ -10,9 +10,10 @@ from roslet.engine.rtps.limits import Limits
 from roslet.engine.rtps.liveliness import Liveliness
 from roslet.engine.rtps.outbox import Outbox
 from roslet.engine.rtps.qos import incompatible
+from roslet.engine.rtps.reach import addresses_of
 from roslet.engine.rtps.reader import Reader
 from roslet.engine.rtps.sedp import Sedp
-from roslet.engine.rtps.spdp import RemoteParticipant, Spdp, addresses_of
+from roslet.engine.rtps.spdp import RemoteParticipant, Spdp
 from roslet.engine.rtps.writer import FRAGMENT_SIZE, Writer
 from roslet.errors import ProtocolError
 from roslet.wire.rtps import (
@@ -46,12 +47,15 @@ from roslet.wire.rtps.times import INFINITE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any
 
     from roslet.engine.rtps.events import SampleReceived
     from roslet.engine.rtps.outbox import Address, Datagram
-    from roslet.engine.rtps.reader import WriterProxy
+    from roslet.engine.rtps.reach import Network
+    from roslet.engine.rtps.reader import Sink, WriterProxy
     from roslet.wire.rtps.locator import Locator
+    from roslet.wire.rtps.participant_data import ParticipantData
     from roslet.wire.rtps.qos import Qos
 
 DEFAULT_LEASE = 20.0
@@ -66,6 +70,8 @@ class Participant:
     metatraffic, default   locators at which discovery and samples reach us
     announce_to     addresses of announcements: the multicast group, static peers
     epoch           nanoseconds of the Unix epoch when `now` is 0
+    multicast       the group's locator where we listen to it
+    networks        our interfaces' addresses and the length of their networks' prefixes; empty where they are not known
     """
 
     def __init__(
@@ -83,6 +89,8 @@ class Participant:
         fragment_size: int = FRAGMENT_SIZE,
         match_own: bool = True,
         limits: "Limits | None" = None,
+        multicast: "tuple[Locator, ...]" = (),
+        networks: "tuple[Network, ...]" = (),
     ) -> None:
         if len(guid_prefix) != 12:
             raise ValueError("a GUID prefix has 12 octets, not %d" % len(guid_prefix))
@@ -103,11 +111,13 @@ class Participant:
         self._assert_at: float | None = None
         self._closed = False
         self._match_own = match_own
+        self._networks = networks
         self._own_addresses = addresses_of(default, "")[:1]
         own = participant_data.own(
             self.guid_prefix,
             domain_id=domain_id,
             metatraffic_unicast=metatraffic,
+            metatraffic_multicast=multicast,
             default_unicast=default,
             lease=int(lease * 1000000000),
             user_data=user_data,
@@ -125,6 +135,7 @@ class Participant:
             self._participant_lost,
             self._answered,
             self._count,
+            networks,
         )
         self.sedp = Sedp(
             self.guid_prefix,
@@ -228,6 +239,18 @@ class Participant:
             self._send_liveliness(KIND_AUTOMATIC_LIVELINESS_UPDATE, now)
             self._assert_at = now + self._liveliness_period()
 
+    def move(
+        self, own: "ParticipantData", to: "tuple[Address, ...]", networks: "tuple[Network, ...]", now: float
+    ) -> None:
+        """Our interfaces have changed: from now on the locators of `own` hold, announcements go `to` these addresses, and
+        peers are told. `own` is `spdp.own` with some of its locators replaced."""
+        self._networks = networks
+        self._own_addresses = addresses_of(own.default_unicast, "")[:1]
+        self.spdp.move(own, to, networks, now)
+        if self._match_own:
+            for one in list(self.writers.values()) + list(self.readers.values()):
+                self._endpoint_discovered(one.data, now)
+
     def close(self, now: float) -> None:
         """Depart: the datagrams that say so are the last ones to send."""
         if not self._closed:
@@ -237,10 +260,18 @@ class Participant:
     # -- endpoints
 
     def create_writer(
-        self, topic: str, type_name: str, qos: "Qos", now: float, keyed: bool = False
+        self,
+        topic: str,
+        type_name: str,
+        qos: "Qos",
+        now: float,
+        keyed: bool = False,
+        unicast: "tuple[Locator, ...]" = (),
+        accepts: "Callable[[EndpointData], bool] | None" = None,
     ) -> Writer:
-        """A writer of a topic, by its names in DDS, announced from now on."""
-        endpoint = self._endpoint(topic, type_name, qos, b"\x02" if keyed else b"\x03")
+        """A writer of a topic, by its names in DDS, announced from now on; `unicast`: where answers to it are to go,
+        the participant's default locators where empty; `accepts` may turn down readers that would match."""
+        endpoint = self._endpoint(topic, type_name, qos, b"\x02" if keyed else b"\x03", unicast)
         writer = Writer(
             endpoint,
             self._header,
@@ -250,6 +281,7 @@ class Participant:
             self._epoch,
             self._fragment_size,
         )
+        writer.accepts = accepts
         self.writers[writer.entity_id] = self._all_writers[writer.entity_id] = writer
         self.sedp.announce(endpoint, now)
         for remote in list(self.endpoints.values()):
@@ -264,12 +296,26 @@ class Participant:
         return writer
 
     def create_reader(
-        self, topic: str, type_name: str, qos: "Qos", now: float, keyed: bool = False
+        self,
+        topic: str,
+        type_name: str,
+        qos: "Qos",
+        now: float,
+        keyed: bool = False,
+        unicast: "tuple[Locator, ...]" = (),
+        sink: "Sink | None" = None,
     ) -> Reader:
-        """A reader of a topic, by its names in DDS, announced from now on."""
-        endpoint = self._endpoint(topic, type_name, qos, b"\x07" if keyed else b"\x04")
+        """A reader of a topic, by its names in DDS, announced from now on; `unicast`: where samples for it are to go,
+        the participant's default locators where empty.
+
+        `sink(proxy, value, time)` is called for each sample within `receive_datagram` or `handle_deadline`, in order,
+        and no SampleReceived is made: the writer's proxy, the DATA (of a fragmented sample the DATA it amounts to), and
+        the source's time in nanoseconds or None. Views in `value` are good until it returns. It may call the
+        participant, but must not raise: an exception would take what follows in the datagram with it.
+        """
+        endpoint = self._endpoint(topic, type_name, qos, b"\x07" if keyed else b"\x04", unicast)
         reader = Reader(
-            endpoint, self._header, self.outbox, self.counters, self.limits, self._budget, self._deliver
+            endpoint, self._header, self.outbox, self.counters, self.limits, self._budget, self._deliver, sink
         )
         self.readers[reader.entity_id] = reader
         self.sedp.announce(endpoint, now)
@@ -306,13 +352,15 @@ class Participant:
         """Say that our MANUAL_BY_PARTICIPANT writers are alive."""
         self._send_liveliness(KIND_MANUAL_LIVELINESS_UPDATE, now)
 
-    def _endpoint(self, topic: str, type_name: str, qos: "Qos", kind: bytes) -> EndpointData:
+    def _endpoint(
+        self, topic: str, type_name: str, qos: "Qos", kind: bytes, unicast: "tuple[Locator, ...]"
+    ) -> EndpointData:
         self._serial += 1
         number = self._serial
         entity_id = bytes((number >> 16 & 255, number >> 8 & 255, number & 255)) + kind
         own = self.guid_prefix
         return EndpointData(
-            own + entity_id, topic, type_name, qos, participant_guid=own + guid.ENTITYID_PARTICIPANT
+            own + entity_id, topic, type_name, qos, unicast, participant_guid=own + guid.ENTITYID_PARTICIPANT
         )
 
     def _send_liveliness(self, kind: bytes, now: float) -> None:
@@ -427,15 +475,17 @@ class Participant:
 
     def _addresses(self, found: EndpointData) -> "tuple[Address, ...]":
         if found.guid[:12] == self.guid_prefix:
-            return self._own_addresses
+            return addresses_of(found.unicast, "")[:1] or self._own_addresses
         remote = self.spdp.remotes.get(found.guid[:12])
         if remote is None:
             return ()
-        own = addresses_of(found.unicast or found.multicast, remote.host)
+        own = addresses_of(found.unicast or found.multicast, remote.host, self._networks)
         return own or remote.default
 
     def _consider_reader(self, writer: Writer, found: EndpointData, now: float) -> None:
         if found.topic != writer.data.topic or found.type_name != writer.data.type_name:
+            return
+        if writer.accepts is not None and not writer.accepts(found):
             return
         policies = incompatible(writer.qos, found.qos)
         if policies:

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from roslet.wire.rtps.heartbeat import Heartbeat
     from roslet.wire.rtps.heartbeat_frag import HeartbeatFrag
 
+    Sink = Callable[["WriterProxy", Data, "int | None"], None]
+
 # Seconds between two requests to one writer: what was asked for is on its way meanwhile.
 NACK_INTERVAL = 0.005
 # Seconds until a writer that has not told where it is gets asked, doubled each time, and how often.
@@ -82,7 +84,7 @@ class WriterProxy:
 
 
 class Reader:
-    """Made by `Participant.create_reader`. `deliver` gets events."""
+    """Made by `Participant.create_reader`. `deliver` gets events; samples go to `sink` instead where there is one."""
 
     def __init__(
         self,
@@ -93,6 +95,7 @@ class Reader:
         limits: "Limits",
         budget: "Budget",
         deliver: "Callable[[Any], None]",
+        sink: "Sink | None" = None,
     ) -> None:
         self.data = endpoint
         self.entity_id = endpoint.guid[12:]
@@ -105,6 +108,7 @@ class Reader:
         self._limits = limits
         self._budget = budget
         self._deliver = deliver
+        self.sink = sink
         self._period = self.qos.deadline / 1e9 if self.qos.deadline < INFINITE else None
         self._miss_at: float | None = None
 
@@ -171,6 +175,9 @@ class Reader:
         proxy.held_bytes += size
 
     def _hand_over(self, proxy: WriterProxy, value: "Data", time: "int | None") -> None:
+        if self.sink is not None:
+            self.sink(proxy, value, time)
+            return
         self._deliver(
             SampleReceived(
                 self.entity_id,

@@ -5,6 +5,7 @@ participant renews its lease; only its own announcement makes it known.
 """
 
 from roslet.engine.rtps.events import ParticipantDiscovered, ParticipantLost
+from roslet.engine.rtps.reach import addresses_of, near
 from roslet.errors import ProtocolError
 from roslet.wire.rtps import header, info_dst, info_ts, inline_qos, participant_data
 from roslet.wire.rtps.data import FLAG_D, FLAG_K, Data
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from roslet.engine.rtps.limits import Limits
     from roslet.engine.rtps.outbox import Address, Outbox
-    from roslet.wire.rtps.locator import Locator
+    from roslet.engine.rtps.reach import Network
     from roslet.wire.rtps.participant_data import ParticipantData
 
 ABSENT, ALIVE = "ABSENT", "ALIVE"
@@ -42,25 +43,23 @@ TRANSITIONS = {
 # lost.
 QUICK = 5
 QUICK_PERIOD = 0.1
-# Addresses of one peer that everything is sent to, where none is known to be the right one.
-MAX_ADDRESSES = 4
-# Only this machine sends from here.
-LOOPBACK = "127.0.0.1"
-
-
-def addresses_of(locators: "tuple[Locator, ...]", heard_from: str) -> "tuple[Address, ...]":
-    """Where to send: the address that the peer was heard from if it is among its locators, else the first few usable."""
-    usable = [(one.host, one.port) for one in locators if one.usable]
-    same = [one for one in usable if one[0] == heard_from]
-    return tuple(same[:1] or usable[:MAX_ADDRESSES])
+# What only this machine sends from; 0.0.0.0 is how multicast comes over a loopback without a route.
+LOCAL = ("127.0.0.1", "0.0.0.0")
+# Seconds: a peer that is heard twice, so long apart, from another of its addresses, and not once from the one in use, has
+# moved there.
+MOVED = 1.0
 
 
 class RemoteParticipant:
-    """A participant that announced itself. `heard`: when anything last came from it."""
+    """A participant that announced itself. `heard`: when anything last came from it. `alone`: our multicast does not reach
+    it, so that announcements go to it by itself."""
 
-    def __init__(self, value: "ParticipantData", host: str, now: float) -> None:
+    def __init__(
+        self, value: "ParticipantData", host: str, now: float, networks: "tuple[Network, ...]" = ()
+    ) -> None:
         self.heard = now
-        self.update(value, host)
+        self._elsewhere: tuple[str, float] | None = None
+        self.update(value, host, networks)
 
     def believes(self, host: str, now: float) -> bool:
         """Whether discovery in its name may come from this address: where it was first heard, where it says it is, or this
@@ -69,15 +68,31 @@ class RemoteParticipant:
             return True
         return self.lease is not None and now - self.heard > self.lease / 2
 
-    def update(self, value: "ParticipantData", host: str) -> None:
+    def update(self, value: "ParticipantData", host: str, networks: "tuple[Network, ...]" = ()) -> None:
         self.data = value
         self.host = host
         self.lease = value.lease / 1e9 if value.lease < INFINITE else None
+        self.metatraffic = addresses_of(
+            value.metatraffic_unicast or value.metatraffic_multicast, host, networks
+        )
+        self.default = addresses_of(value.default_unicast or value.default_multicast, host, networks)
+        self.hosts = {host}
+        self.hosts.update(LOCAL)
+        self.hosts.update([address for address, _ in networks])
         locators = value.metatraffic_unicast + value.default_unicast
-        self.hosts = {host, LOOPBACK}
         self.hosts.update([one.host for one in locators if one.usable])
-        self.metatraffic = addresses_of(value.metatraffic_unicast or value.metatraffic_multicast, host)
-        self.default = addresses_of(value.default_unicast or value.default_multicast, host)
+        self.alone = bool(networks) and not (value.metatraffic_multicast and near(host, networks))
+
+    def moved(self, host: str, now: float) -> bool:
+        """An announcement came from `host`: whether the peer is to be reached there from now on."""
+        if host == self.host:
+            self._elsewhere = None
+        elif self._elsewhere is None or self._elsewhere[0] != host:
+            self._elsewhere = (host, now)
+        elif now - self._elsewhere[1] >= MOVED:
+            self._elsewhere = None
+            return True
+        return False
 
 
 class Spdp:
@@ -97,11 +112,13 @@ class Spdp:
         lost: "Callable[[RemoteParticipant], None]",
         answered: "Callable[[bytes], bool]",
         count: "Callable[[str], None]",
+        networks: "tuple[Network, ...]" = (),
     ) -> None:
         self.remotes: dict[bytes, RemoteParticipant] = {}
         self.own = own
         self._outbox = outbox
         self._addresses = addresses
+        self._networks = networks
         self._period = period
         self._limits = limits
         self._epoch = epoch
@@ -129,6 +146,27 @@ class Spdp:
         self._payload = own.emit()
         self._sequence += 1
         self._announce_at = now
+
+    def move(
+        self,
+        own: "ParticipantData",
+        addresses: "tuple[Address, ...]",
+        networks: "tuple[Network, ...]",
+        now: float,
+    ) -> None:
+        """Our interfaces, or whom we announce to, have changed: everybody is told, as often as at the start, and each peer's
+        addresses are chosen anew."""
+        self._addresses = addresses
+        self._networks = networks
+        self._quick = QUICK
+        if own != self.own:
+            self.change(own, now)
+        else:
+            self._announce_at = now
+        for remote in list(self.remotes.values()):
+            remote.update(remote.data, remote.host, networks)
+            self._outbox.send(self._announcement(now, remote.data.guid_prefix), remote.metatraffic)
+            self._discovered(remote, now)
 
     def _announcement(self, now: float, prefix: bytes = b"") -> "tuple[bytes, ...]":
         stamp = info_ts.InfoTimestamp(self._epoch + int(now * 1000000000)).emit()
@@ -183,17 +221,21 @@ class Spdp:
             if len(self.remotes) >= self._limits.participants:
                 self._count("participants-full")
                 return
-            remote = self.remotes[prefix] = RemoteParticipant(found, host, now)
+            remote = self.remotes[prefix] = RemoteParticipant(found, host, now, self._networks)
             # The newcomer hears of us at once, whatever multicast does.
             self._outbox.send(self._announcement(now, prefix), remote.metatraffic)
             self._discovered(remote, now)
             self._deliver(ParticipantDiscovered(found))
         elif remote is not None:
             remote.heard = now
+            moved = remote.moved(host, now)
             if found != remote.data or host not in remote.hosts:
-                remote.update(found, host)
+                remote.update(found, host, self._networks)
                 self._discovered(remote, now)
                 self._deliver(ParticipantDiscovered(found))
+            elif moved:
+                remote.update(found, host, self._networks)
+                self._discovered(remote, now)
             if not self._answered(prefix):
                 # Our greeting was lost, or it lost us; its next chance would be our next announcement.
                 self._outbox.send(self._announcement(now, prefix), remote.metatraffic)
@@ -217,7 +259,9 @@ class Spdp:
     def handle_deadline(self, now: float) -> None:
         """Announce, and let leases expire."""
         if self._announce_at is not None and now >= self._announce_at:
-            self._outbox.send(self._announcement(now), self._addresses)
+            alone = [one.metatraffic for one in self.remotes.values() if one.alone]
+            singly = [one[0] for one in alone if one and one[0] not in self._addresses]
+            self._outbox.send(self._announcement(now), self._addresses + tuple(singly))
             self._quick = max(0, self._quick - 1)
             self._announce_at = now + (QUICK_PERIOD if self._quick else self._period)
         if self._expire_at is not None and now >= self._expire_at:

@@ -56,6 +56,7 @@ class ReaderProxy:
         "preface",
         "reliable",
         "resent",
+        "sent",
         "start",
     )
 
@@ -66,6 +67,7 @@ class ReaderProxy:
         self.reliable = remote.qos.reliable
         self.start = start  # samples before this one are not for it
         self.acked = start - 1
+        self.sent = start - 1  # up to here it was told of every number, where some were for others
         self.count = -1
         self.frag_count = -1
         self.info_dst = bytes(info_dst.InfoDestination(remote.guid[:12]).emit())
@@ -94,6 +96,7 @@ class Writer:
         self.history = History(self.qos)
         self.proxies: dict[bytes, ReaderProxy] = {}
         self.last = 0
+        self.accepts: Callable[[EndpointData], bool] | None = None  # which readers are matched, where not all
         self.fragment_size = fragment_size
         self._header = header
         self._outbox = outbox
@@ -107,6 +110,7 @@ class Writer:
         self._preface = Preface(header, self.entity_id)
         self._addresses: tuple[Address, ...] = ()
         self._any_reliable = False
+        self._directed = False  # whether any sample was for one reader alone
         self._since_heartbeat = 0
         self._heartbeats = 0
         self._heartbeat_at: float | None = None
@@ -128,12 +132,18 @@ class Writer:
         inline_qos: bytes = b"",
         key: bytes = b"",
         flags: int = FLAG_D,
+        to: bytes = b"",
     ) -> int:
         """Send a sample to the matched readers, and keep it as the QoS says. Returns its sequence number.
 
         `payload` begins with its encapsulation header and may be reused as soon as the datagrams are out; `time` is
-        the source's, now where None. Raises HistoryFull.
+        the source's, now where None. `to`: the GUID of the one matched reader that it is for; the others learn, when
+        next something is sent to them, that they miss nothing. Such samples are an instance of their own for
+        KEEP_LAST, unless there is a `key`. If it is not matched nothing is sent, and 0 is returned. Raises HistoryFull.
         """
+        if to and to not in self.proxies:
+            self._count("write-to-unmatched-reader")
+            return 0
         if time is None:
             time = self._epoch + int(now * 1000000000)
         if self._lifespan is not None:
@@ -145,7 +155,7 @@ class Writer:
         large = len(payload) > self.fragment_size
         if kept or large:
             payload = bytes(payload)
-            change = Change(sequence, payload, inline_qos, flags, time, key)
+            change = Change(sequence, payload, inline_qos, flags, time, key or to, to)
             if self._lifespan is not None:
                 change.expires = now + self._lifespan
             if kept:
@@ -153,10 +163,22 @@ class Writer:
         self.last = sequence
         if not self._addresses:
             return sequence
+        if to or self._directed:
+            if not self._directed:
+                self._directed = True
+                for proxy in self.proxies.values():
+                    proxy.sent = sequence - 1
+            self._tell_skipped(to, sequence - 1)
+        if to and not large:
+            self._send_change(
+                self.proxies[to], Change(sequence, bytes(payload), inline_qos, flags, time, key, to)
+            )
+            self._ask_soon(now)
+            return sequence
         if large:
             self._large = sequence
             self._large_whole = True
-            self._pace(change, None, None)
+            self._pace(change, self.proxies[to] if to else None, None)
             self._ask_soon(now)
             return sequence
         seconds, fraction = times.split(time)
@@ -208,6 +230,7 @@ class Writer:
         late = self.keeps and remote.qos.durability >= TRANSIENT_LOCAL
         proxy = ReaderProxy(remote, addresses, self.history.first(self.last + 1) if late else self.last + 1)
         proxy.reliable = proxy.reliable and self.reliable
+        proxy.sent = self.last
         self.proxies[remote.guid] = proxy
         self._refresh()
         if late:
@@ -279,7 +302,12 @@ class Writer:
         behind = [one for one in self.proxies.values() if one.reliable and one.acked < self.last]
         if not behind:
             return
-        if len(behind) == 1:
+        if self._directed:
+            for one in behind:
+                self._tell_skipped(one.guid, self.last)
+                parts = (self._header, one.info_dst, self._heartbeat(one.guid[12:], False).emit())
+                self._outbox.send(parts, one.addresses)
+        elif len(behind) == 1:
             parts = (self._header, behind[0].info_dst, self._heartbeat(behind[0].guid[12:], False).emit())
             self._outbox.send(parts, behind[0].addresses)
         else:
@@ -321,7 +349,8 @@ class Writer:
             for number in asked:
                 if number in self._paced:
                     continue
-                if number < proxy.start or self.history.get(number) is None:
+                change = self.history.get(number)
+                if number < proxy.start or change is None or change.to not in (b"", guid):
                     absent.append(number)
                 elif now - proxy.resent.get(number, -1.0) >= RESEND_SUPPRESSION:
                     if len(proxy.resent) > MAX_RESENT:
@@ -380,6 +409,14 @@ class Writer:
         else:
             self.history.remove_through(least)
 
+    def _tell_skipped(self, only: bytes, last: int) -> None:
+        """A GAP, to reader `only` or to all, over what went to others only, up to number `last`."""
+        for proxy in self.proxies.values() if not only else (self.proxies[only],):
+            if proxy.sent < last and proxy.reliable:
+                message = Gap(proxy.guid[12:], self.entity_id, proxy.sent + 1, number_set.NumberSet(last + 1))
+                self._outbox.send((self._header, proxy.info_dst, message.emit()), proxy.addresses)
+            proxy.sent = self.last
+
     def _send_gaps(self, proxy: ReaderProxy, absent: "list[int]") -> None:
         """GAPs over numbers, in order: the run they begin with as a range, the rest as a set."""
         start = base = absent[0]
@@ -393,17 +430,20 @@ class Writer:
 
     def _send_to(self, proxy: ReaderProxy, number: int, now: float) -> None:
         change = self.history.get(number)
-        if change is None:
+        if change is None or change.to not in (b"", proxy.guid):
             return
         if len(change.payload) > self.fragment_size:
             self._pace(change, proxy, None)
-            return
+        else:
+            self._send_change(proxy, change)
+
+    def _send_change(self, proxy: ReaderProxy, change: Change) -> None:
         if proxy.preface is None:
             proxy.preface = Preface(self._header, self.entity_id, proxy.guid[12:], proxy.info_dst)
         seconds, fraction = times.split(change.time)
         flags = change.flags | FLAG_E | (FLAG_Q if change.inline_qos else 0)
         size = len(change.inline_qos) + len(change.payload)
-        front = proxy.preface.emit(number, size, seconds, fraction, flags)
+        front = proxy.preface.emit(change.sequence, size, seconds, fraction, flags)
         self._outbox.send((front, change.inline_qos, change.payload), proxy.addresses)
 
     def _pace(self, change: Change, proxy: "ReaderProxy | None", numbers: "list[int] | None") -> None:
