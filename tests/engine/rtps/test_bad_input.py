@@ -405,9 +405,18 @@ def test_a_request_for_fragments_that_are_not_there_is_no_flood() -> None:
         sent += victim.turn()
     # Fragments 2 and 3, and the heartbeat behind them, for each.
     assert len(sent) <= 3 * 19
-    request = hand.nack_frag(READER, writer.entity_id, 77, 1, 256, everything, 99)
+
+
+@pytest.mark.parametrize("sequence", [2, 77, LAST])
+def test_fragments_of_a_sample_that_is_yet_to_be_written_are_not_declared_a_gap(sequence: int) -> None:
+    victim, writer = offered(fragment_size=1000)
+    writer.write(b"\0\1\0\0" + bytes(2500), 0.0)
+    victim.now += 1.0
+    victim.turn()
+    request = hand.nack_frag(READER, writer.entity_id, sequence, 1, 32, (0xFFFFFFFF,), 99)
     victim.participant.receive_datagram(hand.message(request), SOURCE, victim.now)
-    assert len(victim.turn()) == 1
+    assert victim.turn() == []
+    assert victim.counters == {"nack-frag-of-unwritten-sample": 1}
 
 
 # -- discovery

@@ -384,6 +384,10 @@ class Writer:
             self._count("nack-frag-repeated")
             return
         proxy.frag_count = value.count
+        if value.sequence > self.last:
+            # A GAP over what is yet to be written would lose it.
+            self._count("nack-frag-of-unwritten-sample")
+            return
         change = self.history.get(value.sequence)
         if change is None:
             self._send_gaps(proxy, [value.sequence])
