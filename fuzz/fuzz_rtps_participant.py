@@ -226,10 +226,9 @@ def said(program: Program) -> bytes:
     return hand.submessage(program.octet(), program.octet(), octets, e, program.one((None, 0, 1, 65535)))
 
 
-def invented(program: Program) -> None:
-    """Two peers that have met the victim, and then say anything."""
+def met() -> Participant:
+    """A victim that two peers have met, each with a writer and a reader."""
     participant = victim(PEERS[2])
-    now = 0.0
     for prefix in PEERS[:2]:
         writer = hand.endpoint(prefix + hand.WRITER, "rt/chatter", STRING)
         reader = hand.endpoint(prefix + hand.READER, "rt/chatter", STRING)
@@ -241,8 +240,15 @@ def invented(program: Program) -> None:
             hand.message(hand.heartbeat(hand.SUBSCRIPTIONS_WRITER, 1, 1, 1), prefix=prefix),
             hand.message(hand.heartbeat(hand.WRITER, 1, 0, 1), prefix=prefix),
         ):
-            participant.receive_datagram(datagram, hand.SOURCE, now)
-    turn(participant, now)
+            participant.receive_datagram(datagram, hand.SOURCE, 0.0)
+    turn(participant, 0.0)
+    return participant
+
+
+def invented(program: Program) -> None:
+    """Two peers that have met the victim, and then say anything."""
+    participant = met()
+    now = 0.0
     while not program.over():
         now += program.one((*(0.0,) * 8, *(0.001,) * 4, 0.02, 0.1, 0.3, 3.0))
         source = (program.one((*(HOSTS[0],) * 4, *HOSTS)), 7410)
