@@ -299,8 +299,8 @@ class Writer:
         return True
 
     def _greet(self, sequence: int) -> None:
-        """Before sample `sequence`, introduce us again to readers that have said nothing yet: the first introduction may have
-        come before they knew of us, and Cyclone takes what comes before any for history, which a volatile reader of it
+        """Before sample `sequence`, introduce us again to readers that have said nothing yet: the first introduction may
+        have come before they knew of us, and Cyclone takes what comes before any for history, which a volatile reader of it
         has no use for."""
         self._strangers = False
         for proxy in self.proxies.values():
@@ -446,6 +446,10 @@ class Writer:
             self._common.count("nack-frag-repeated")
             return
         proxy.frag_count = value.count
+        if value.sequence > self.last:
+            # A GAP over what is yet to be written would lose it.
+            self._common.count("nack-frag-of-unwritten-sample")
+            return
         self._repairs.send_fragments_again(proxy, value, now, reply or proxy.addresses)
 
     def _forget_acknowledged(self) -> None:
