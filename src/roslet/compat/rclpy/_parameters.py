@@ -239,14 +239,14 @@ class ParametersOfNode:
             if name.startswith(begin)
         }
 
-    def get_parameter_type(self, name: str) -> Parameter.Type:
-        """Raises ParameterNotDeclaredException."""
+    def get_parameter_type(self, name: str) -> int:
+        """The number of its type. Raises ParameterNotDeclaredException."""
         try:
-            return Parameter.Type(self._store.get_type(name))
+            return self._store.get_type(name)
         except ParameterNotDeclared:
             raise ParameterNotDeclaredException(name) from None
 
-    def get_parameter_types(self, names: Sequence[str]) -> list[Parameter.Type]:
+    def get_parameter_types(self, names: Sequence[str]) -> list[int]:
         """Raises ParameterNotDeclaredException."""
         return [self.get_parameter_type(name) for name in names]
 
