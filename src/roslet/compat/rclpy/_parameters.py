@@ -58,9 +58,7 @@ class Store(store.Parameters):
             stop = "." if whole else ""
             return f"Parameter {name} out of range{stop} Min: {low}, Max: {high}, value: {value}"
         close = "a valid step" if whole else "close enough to a valid step"
-        return (
-            f"The parameter value for {name} is not {close}. Min: {low}, max: {high}, value: {value}, step: {step}"
-        )
+        return f"The parameter value for {name} is not {close}. Min: {low}, max: {high}, value: {value}, step: {step}"
 
 
 class NodeParameters(services.NodeParameters):
@@ -79,7 +77,10 @@ class NodeParameters(services.NodeParameters):
         return [
             Requests(
                 network.service(  # type: ignore[arg-type]
-                    network.own_service(name), message_class(f"rcl_interfaces/srv/{kind}"), handler, presets.PARAMETERS
+                    network.own_service(name),
+                    message_class(f"rcl_interfaces/srv/{kind}"),
+                    handler,
+                    presets.PARAMETERS,
                 ),
                 group,
                 None,

@@ -218,10 +218,24 @@ class Ros2Publisher(_Endpoint, Publisher):
     # -- within this process
 
     def _deliver_locally(self, message: Message) -> None:
-        for subscription in self._local:
-            subscription._deliver_later(self._for_local(subscription, message), None)
+        if self._local:
+            link = self._local_link()
+            for subscription in self._local:
+                subscription._deliver_later(self._for_local(subscription, message), link)
+                if subscription.qos.deadline is not None:
+                    subscription._came_in_time()
         if self._kept is not None:
             self._kept.append(message.copy())
+
+    def _local_link(self) -> Any:
+        """What a subscription of this process is told of where a message came from."""
+        return None
+
+    def _happened(self, fact: Any) -> None:
+        super()._happened(fact)
+        if type(fact) is facts.LivelinessLost or type(fact) is facts.LivelinessRegained:
+            for subscription in self._local:
+                subscription._happened(fact)
 
     def _attach(self, subscription: Subscription) -> None:
         super()._attach(subscription)
@@ -316,6 +330,14 @@ class Ros2Subscription(_Endpoint, Subscription):
                     return
             link = MessageInfo(sent, received, gid, sequence) if self._with_link else None
         super()._deliver(message, link)
+
+    def _came_in_time(self) -> None:
+        """A message of this process, which the reader does not see: another is due by the deadline."""
+        network = self._network
+        with network.reactor.lock:
+            if self._reader is not None:
+                self._reader.note_deadline(network.reactor.now())
+                network.shell.flush()
 
     @property
     def publisher_count(self) -> int:
