@@ -113,12 +113,7 @@ def publish(key, first, count, size, pause):
 
 def close(key):
     made, _ = endpoints.pop(key)
-    for destroy in (
-        node.destroy_publisher,
-        node.destroy_subscription,
-        node.destroy_service,
-        node.destroy_client,
-    ):
+    for destroy in (node.destroy_publisher, node.destroy_subscription, node.destroy_service, node.destroy_client):
         if destroy(made):  # False for what is another kind of thing
             return
 

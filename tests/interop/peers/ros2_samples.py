@@ -206,11 +206,7 @@ def request(type_name, i, size):
     if type_name == "std_srvs/srv/Trigger":
         return {}
     header = {"_type": "std_msgs/msg/Header", "stamp": _stamp(i), "frame_id": "%d" % i}
-    info = {
-        "_type": "sensor_msgs/msg/CameraInfo",
-        "header": header,
-        "d": [float(k) for k in range(size // 8)],
-    }
+    info = {"_type": "sensor_msgs/msg/CameraInfo", "header": header, "d": [float(k) for k in range(size // 8)]}
     return {"camera_info": info}
 
 

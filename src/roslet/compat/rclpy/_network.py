@@ -82,7 +82,7 @@ class QueuedSubscription(_Told, Ros2Subscription):
         return bool(self._arrived)
 
     def take_one(self, raw: bool = False) -> tuple[Any, MessageInfo] | None:
-        """The oldest message, or its bytes, and where it came from. None where there is none, or none that is well-formed."""
+        """The oldest message, or its bytes, and where it came from. None where there is no well-formed one."""
         while not self.closed:
             try:
                 message, link = self._arrived.popleft()

@@ -252,7 +252,7 @@ class ParametersOfNode:
         return [self.get_parameter_type(name) for name in names]
 
     def list_parameters(self, prefixes: Sequence[str], depth: int) -> Any:
-        """A ListParametersResult: those below any of the prefixes, all where there are none, `depth` levels deep, 0 for all."""
+        """A ListParametersResult: those below any prefix, all where there is none, `depth` levels deep, 0 for all."""
         names, found = self._store.list_parameters(list(prefixes), depth)
         return message_class("rcl_interfaces/msg/ListParametersResult")(names=names, prefixes=found)
 
@@ -270,8 +270,8 @@ class ParametersOfNode:
     # -- setting
 
     def set_parameters(self, parameter_list: Sequence[Parameter]) -> list[Any]:
-        """Set each by itself; a SetParametersResult for each. Raises ParameterNotDeclaredException where one is not declared,
-        TypeError for what is no Parameter."""
+        """Set each by itself; a SetParametersResult for each. Raises ParameterNotDeclaredException where one is not
+        declared, TypeError for what is no Parameter."""
         _check_parameters(parameter_list)
         return [self._set([one]) for one in parameter_list]
 

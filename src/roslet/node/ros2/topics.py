@@ -220,6 +220,7 @@ class Ros2Publisher(_Endpoint, Publisher):
     def _deliver_locally(self, message: Message) -> None:
         if self._local:
             link = self._local_link()
+            subscription: Any
             for subscription in self._local:
                 subscription._deliver_later(self._for_local(subscription, message), link)
                 if subscription.qos.deadline is not None:
@@ -234,6 +235,7 @@ class Ros2Publisher(_Endpoint, Publisher):
     def _happened(self, fact: Any) -> None:
         super()._happened(fact)
         if type(fact) is facts.LivelinessLost or type(fact) is facts.LivelinessRegained:
+            subscription: Any
             for subscription in self._local:
                 subscription._happened(fact)
 
