@@ -49,6 +49,8 @@ class Entity:
     """Something with a callback that an executor runs. `_nothing` is what `_take` gives where there is no work after all."""
 
     _nothing = object()
+    # Whether it gets ready by itself, as timers do: executors look at it in every turn. The others notify.
+    _polled = False
 
     def __init__(self, callback_group: CallbackGroup | None) -> None:
         self.callback_group = callback_group
@@ -61,11 +63,13 @@ class Entity:
         self._home = weakref.ref(node)
 
     def _notify(self) -> None:
-        """Wake the executor of the node."""
+        """Have the executor of the node look at this entity. From any thread."""
         node = None if self._home is None else self._home()
-        executor = None if node is None else node.executor
-        if executor is not None:
-            executor.wake()
+        if node is not None:
+            node._active.add(self)
+            executor = node.executor
+            if executor is not None:
+                executor.wake()
 
     def _check(self) -> None:
         """Raises InvalidHandle where it was destroyed."""

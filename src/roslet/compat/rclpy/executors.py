@@ -80,6 +80,9 @@ async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
 class Executor:
     """The base. Use SingleThreadedExecutor or MultiThreadedExecutor; as a context manager it is shut down at the end."""
 
+    # Whether callbacks run in others than the thread that spins.
+    _threads = False
+
     def __init__(self, *, context: Context | None = None) -> None:
         from roslet.compat.rclpy.utilities import get_default_context
 
@@ -277,7 +280,8 @@ class Executor:
             finally:
                 if group is not None:
                     group.ending_execution(entity)
-                    self.wake()
+                    if self._threads:
+                        self.wake()  # the thread that spins may wait for what this group held back
 
         return Task(run, executor=self)
 
@@ -285,9 +289,10 @@ class Executor:
         """Seconds to the nearest timer that may run."""
         with self._lock:
             nearest = None
-            for entity in self._entities():
-                if self.can_execute(entity):
-                    nearest = _least(nearest, entity._seconds())
+            for node in self._nodes:
+                for entity in node._polled:
+                    if self.can_execute(entity):
+                        nearest = _least(nearest, entity._seconds())
             return nearest
 
     # -- the end
@@ -332,6 +337,8 @@ class SingleThreadedExecutor(Executor):
 class MultiThreadedExecutor(Executor):
     """Runs callbacks in `num_threads` threads; None: as many as this process has processors, at least two. Raises
     ValueError for less than one. What a callback raises comes out of a later turn."""
+
+    _threads = True
 
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
         super().__init__(context=context)

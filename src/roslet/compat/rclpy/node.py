@@ -51,7 +51,7 @@ from roslet.node.ros2 import descriptions
 from roslet.wire.tcpros import MAX_FRAME
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
     from types import TracebackType
 
     from typing_extensions import Self
@@ -111,7 +111,9 @@ class Node(ParametersOfNode, GraphOfNode):
         self._entity_lists: dict[type, list[Any]] = {
             kind: [] for kind in (Subscription, Client, Service, Timer, GuardCondition, Entity)
         }
-        self._all: tuple[Entity, ...] = ()
+        self._polled: tuple[Entity, ...] = ()
+        self._order: dict[Entity, int] = {}
+        self._active: set[Entity] = set()  # those that have notified and may be ready
         self._rates: list[Rate] = []
         self._set_callbacks = {}
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
@@ -279,12 +281,26 @@ class Node(ParametersOfNode, GraphOfNode):
 
     # -- what executors run
 
-    def _entities(self) -> tuple[Entity, ...]:
-        return self._all
+    def _entities(self) -> Iterable[Entity]:
+        """Those that may be ready, in the order in which they are to run."""
+        active = self._active
+        if not active:
+            return self._polled
+        found = []
+        for entity in list(active):
+            # First: what notifies from here on is looked at again.
+            active.discard(entity)
+            if entity._ready():
+                active.add(entity)
+                found.append(entity)
+        order = self._order
+        return [*self._polled, *sorted(found, key=lambda entity: order.get(entity, 0))]
 
     def _adopt(self, kind: type, entity: Any) -> Any:
         entity._belongs_to(self)
         self._entity_lists[kind].append(entity)
+        if not entity._polled:
+            self._active.add(entity)
         self._refresh()
         return entity
 
@@ -303,7 +319,9 @@ class Node(ParametersOfNode, GraphOfNode):
 
     def _refresh(self) -> None:
         order = (Timer, Subscription, GuardCondition, Client, Service, Entity)
-        self._all = tuple(entity for kind in order for entity in self._entity_lists[kind])
+        entities = [entity for kind in order for entity in self._entity_lists[kind]]
+        self._polled = tuple(entity for entity in entities if entity._polled)
+        self._order = {entity: number for number, entity in enumerate(entities)}
         self._wake_executor()
 
     def add_waitable(self, waitable: Any) -> None:

@@ -52,6 +52,8 @@ class Timer(Entity):
     Calls that come late are not made up for: the next is at the next multiple of the period that is to come.
     """
 
+    _polled = True
+
     def __init__(
         self,
         callback: Callable[..., Any] | None,

@@ -49,6 +49,8 @@ class NumberOfEntities:
 class Waitable(Entity):
     """The base: give it `is_ready`, `take_data` and `execute`, and add it by `Node.add_waitable`."""
 
+    _polled = True
+
     def __init__(self, callback_group: CallbackGroup | None) -> None:
         super().__init__(callback_group)
         self._futures: list[Any] = []
