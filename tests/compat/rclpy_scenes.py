@@ -49,6 +49,7 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
     "action server and client": (("action_server.py",), ("action_client.py",)),
     "parameters": (("parameters.py",),),
     "parameter clients": (("parameter_clients.py",),),
+    "parameters of another node": (("parameter_owner.py",), ("parameter_asker.py",)),
     "quality of service": (("qos.py",),),
     "events": (("qos_events.py",),),
     "callback groups": (("callback_groups.py",),),
@@ -127,13 +128,19 @@ def file_of(scene: str) -> pathlib.Path:
     return EXPECTED / (scene.replace(",", "").replace(" ", "_") + ".txt")
 
 
-def play(scene: str, interpreter: tuple[str, ...], folder: pathlib.Path, **environment: str) -> str:
-    """What the programs of a scene say: for each one its exit code, its output, and log lines where they are compared."""
-    environment = {"PYTHONUNBUFFERED": "1", "ROS_LOG_DIR": str(folder / "log"), **environment}
+# Words before a program's file, and its environment.
+Interpreter = tuple[tuple[str, ...], dict[str, str]]
+
+
+def play(scene: str, folder: pathlib.Path, *interpreters: Interpreter) -> str:
+    """What the programs of a scene say: for each one its exit code, its output, and log lines where they are compared. The
+    programs take the interpreters in turn."""
     with Namespace(folder) as namespace:
         started = []
         for number, command in enumerate(SCENES[scene]):
-            line = (*interpreter, str(PROGRAMS / command[0]), *command[1:])
+            words, environment = interpreters[number % len(interpreters)]
+            environment = {"PYTHONUNBUFFERED": "1", "ROS_LOG_DIR": str(folder / "log"), **environment}
+            line = (*words, str(PROGRAMS / command[0]), *command[1:])
             started.append(namespace.start(*line, name=f"{number}", **environment))
         said = [_told(scene, program) for program in started]
     return "".join(
@@ -151,22 +158,27 @@ def _told(scene: str, program: Program) -> str:
     return "".join(line + "\n" for line in [*lines, f"exit {code}"])
 
 
-def under_rclpy(distribution: str, scene: str, folder: pathlib.Path) -> str:
-    """As `play`, under the real one."""
+def rclpy(distribution: str, scene: str) -> Interpreter:
+    """The real one."""
     if scene in NEED_TEST_MSGS:
         peers.require(f"{distribution}-test-msgs")
-    return play(scene, (str(peers.require(distribution)),), folder)
+    return (str(peers.require(distribution)),), {}
+
+
+def roslet() -> Interpreter:
+    """`roslet run`."""
+    words = (sys.executable, "-m", "roslet.cli.main", "run")
+    return words, {"PYTHONPATH": str(peers.ROOT / "src"), "ROSLET_TYPES": str(DEFINITIONS)}
+
+
+def under_rclpy(distribution: str, scene: str, folder: pathlib.Path) -> str:
+    """As `play`, under the real one."""
+    return play(scene, folder, rclpy(distribution, scene))
 
 
 def under_roslet(scene: str, folder: pathlib.Path) -> str:
     """As `play`, under `roslet run`."""
-    return play(
-        scene,
-        (sys.executable, "-m", "roslet.cli.main", "run"),
-        folder,
-        PYTHONPATH=str(peers.ROOT / "src"),
-        ROSLET_TYPES=str(DEFINITIONS),
-    )
+    return play(scene, folder, roslet())
 
 
 def main(distribution: str, *scenes: str) -> None:

@@ -73,11 +73,12 @@ def _adapt_action(kind: Any) -> None:
 
 def _adapt_message(kind: Any) -> None:
     fields = {name: _spelled(text) for name, text in kind._fields_and_types}
+    octets = {name for name, text in kind._fields_and_types if text.startswith("byte[")}
     package, part, name = kind._type.split("/")
     for row in kind._spec:
         if not isinstance(row[1], str):
             adapt(row[1])
-        convert = _converter(row)
+        convert = Octets if row[0] in octets else _converter(row)
         if convert is not None:
             setattr(kind, row[0], _Converted(getattr(kind, row[0]), convert))
     kind.__init__ = _constructor(kind)
@@ -143,6 +144,39 @@ def _converter(row: Any) -> Callable[[Any], Any] | None:
     return to_numpy
 
 
+class Octets(array.array):  # type: ignore[type-arg]
+    """Several of type `byte`: to programs the list that rosidl has, of bytes of one octet each; to the serialiser, octets."""
+
+    def __new__(cls, value: Any = b"") -> Octets:
+        if not isinstance(value, (bytes, bytearray, memoryview)):
+            value = bytes(value) if hasattr(value, "dtype") else b"".join(value)
+        return super().__new__(cls, "B", bytes(value))
+
+    def __getitem__(self, index: Any) -> Any:
+        found = super().__getitem__(index)
+        return Octets(found.tobytes()) if isinstance(index, slice) else bytes((found,))
+
+    def __setitem__(self, index: Any, value: Any) -> None:
+        super().__setitem__(index, Octets(value) if isinstance(index, slice) else value[0])
+
+    def __iter__(self) -> Any:
+        return (bytes((one,)) for one in self.tobytes())
+
+    def __eq__(self, other: object) -> bool:
+        return list(self) == list(other) if isinstance(other, (list, tuple, Octets)) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return repr(list(self))
+
+    def append(self, value: Any) -> None:
+        super().append(value[0])
+
+    def extend(self, values: Any) -> None:
+        super().extend(Octets(values))
+
+
 def _to_array(code: str) -> Callable[[Any], array.array[Any]]:
     make = array.array
 
@@ -188,7 +222,7 @@ def _printer(kind: Any, name: str) -> Callable[[Any], str]:
 
 
 def _shown(value: Any) -> str:
-    if isinstance(value, array.array):
+    if isinstance(value, array.array) and not isinstance(value, Octets):
         return repr(value.tolist())
     return repr(value)
 
