@@ -145,9 +145,9 @@ def _converter(row: Any) -> Callable[[Any], Any] | None:
 
 
 class Octets(array.array):  # type: ignore[type-arg]
-    """Several of type `byte`: to programs the list that rosidl has, of bytes of one octet each; to the serialiser, octets."""
+    """Several of type `byte`: to programs a list of bytes of one octet each, as rosidl has it; to the serialiser, octets."""
 
-    def __new__(cls, value: Any = b"") -> Octets:
+    def __new__(cls, value: Any = b"") -> Any:
         if not isinstance(value, (bytes, bytearray, memoryview)):
             value = bytes(value) if hasattr(value, "dtype") else b"".join(value)
         return super().__new__(cls, "B", bytes(value))
@@ -165,7 +165,7 @@ class Octets(array.array):  # type: ignore[type-arg]
     def __eq__(self, other: object) -> bool:
         return list(self) == list(other) if isinstance(other, (list, tuple, Octets)) else NotImplemented
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None
 
     def __repr__(self) -> str:
         return repr(list(self))

@@ -31,7 +31,7 @@ def answer(future):
 print("known", settle(lambda: "/space/owner" in node.get_fully_qualified_node_names()))
 settle(lambda: node.count_publishers("/parameter_events") == 2)
 names = ["text", "number", "list", "octets"]
-for name, value in zip(names, answer(client.get_parameters(names)).values):
+for name, value in zip(names, answer(client.get_parameters(names)).values, strict=True):
     print(name, value.type, list(value.double_array_value), list(value.byte_array_value), value.string_value)
 print(sorted(answer(client.list_parameters()).result.names))
 described = answer(client.describe_parameters(["number"])).descriptors[0]
