@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from roslet.node.ros2.services import Ros2Client
 
 
+class _GivenUp(RosletError):
+    """The program waits for this no more: its future stays as it is."""
+
+
 class Inbox(Entity):
     """What the loop has for the executor to do, in order: no more than was asked for, so there is no bound of its own."""
 
@@ -42,6 +46,8 @@ class Inbox(Entity):
             node = None if self._home is None else self._home()
             future._set_executor(None if node is None else node.executor)
             error = asked.exception()
+            if isinstance(error, _GivenUp):
+                return
             if error is not None:
                 future.set_exception(error)
             else:
@@ -117,8 +123,7 @@ class Client(Inbox):
         """Wait for the response of this call no more."""
         asked = self._pending.pop(future, None)
         if asked is not None:
-            asked._callbacks = asked._callbacks[1:]  # ours, which would tell the future
-            asked.set_exception(RosletError("given up"))
+            asked.set_exception(_GivenUp())
 
     def service_is_ready(self) -> bool:
         """Whether there is a server, and both ways are matched."""
