@@ -14,6 +14,7 @@ import pytest
 import roslet
 from roslet.io.select import reactor
 from roslet.master.server import MasterServer
+from roslet.node.ros1.network import Ros1Network
 from roslet.wire.tcpros import emit_header, parse_header
 
 PATIENCE = 8.0
@@ -55,9 +56,19 @@ def make(master: MasterServer) -> Iterator[Nodes]:
         node.close()
 
 
+def ros1(node: roslet.Node) -> Ros1Network:
+    """What the node is on its network."""
+    return node._ros1("a test")
+
+
+def entry_of(handle: Any) -> Any:
+    """What the engine knows of a publisher or subscription of ROS 1."""
+    return handle._entry
+
+
 def ports(node: roslet.Node) -> tuple[int, int]:
     """The node's slave API port and its TCPROS port."""
-    return int(node.uri.rstrip("/").rpartition(":")[2]), node._engine.tcpros_port
+    return int(node.uri.rstrip("/").rpartition(":")[2]), ros1(node).engine.tcpros_port
 
 
 def descriptors() -> int:

@@ -4,8 +4,14 @@ import pytest
 
 from roslet.errors import InvalidName, Unsupported
 from roslet.names import (
+    LOCALHOST,
     MAX_NAME,
+    MAX_PEERS,
+    OFF,
+    SUBNET,
+    SYSTEM_DEFAULT,
     Arguments,
+    Ros2Network,
     canonical,
     check_base_name,
     check_name,
@@ -13,6 +19,7 @@ from roslet.names import (
     namespace_of,
     parse_host_port,
     parse_network,
+    parse_ros2_network,
     resolve,
 )
 
@@ -167,3 +174,103 @@ def test_other_networks_are_refused_with_a_sentence() -> None:
         parse_network("ros2://42")
     with pytest.raises(InvalidName, match="write ros1://host:port"):
         parse_network("tcp://x:1")
+
+
+@pytest.mark.parametrize(
+    ("network", "environment", "expected"),
+    [
+        (None, {}, Ros2Network()),
+        ("ros2://", {"ROS_DOMAIN_ID": ""}, Ros2Network()),
+        ("ros2://", {"ROS_DOMAIN_ID": "7"}, Ros2Network(7)),
+        ("ros2://0", {"ROS_DOMAIN_ID": "7"}, Ros2Network(0)),
+        ("ros2://42/", {}, Ros2Network(42)),
+        ("ros2://232", {}, Ros2Network(232)),
+        ("ros2://?interface=eth0&interface=10.0.0.7", {}, Ros2Network(0, ("eth0", "10.0.0.7"))),
+        (
+            "ros2://1?peers=10.0.0.7,robot-1.local:7412&peers=10.0.0.9",
+            {},
+            Ros2Network(1, (), (("10.0.0.7", None), ("robot-1.local", 7412), ("10.0.0.9", None))),
+        ),
+        (
+            "ros2://?peers=a,a,b",
+            {"ROS_STATIC_PEERS": "b;c;"},
+            Ros2Network(0, (), (("a", None), ("b", None), ("c", None))),
+        ),
+        (None, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, Ros2Network(range=LOCALHOST)),
+        (None, {"ROS_AUTOMATIC_DISCOVERY_RANGE": ""}, Ros2Network(range=SUBNET)),
+        ("ros2://?range=subnet", {"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, Ros2Network(range=SUBNET)),
+        ("ros2://?localhost=1", {}, Ros2Network(range=LOCALHOST)),
+        ("ros2://?localhost=0", {"ROS_LOCALHOST_ONLY": "1"}, Ros2Network(range=SUBNET)),
+        (None, {"ROS_LOCALHOST_ONLY": "0"}, Ros2Network()),
+        # rcl: "'automatic_discovery_range' and 'static_peers' will be ignored"
+        (
+            None,
+            {
+                "ROS_LOCALHOST_ONLY": "1",
+                "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
+                "ROS_STATIC_PEERS": "10.0.0.1",
+            },
+            Ros2Network(range=LOCALHOST),
+        ),
+        (
+            "ros2://?peers=10.0.0.1",
+            {"ROS_LOCALHOST_ONLY": "1"},
+            Ros2Network(0, (), (("10.0.0.1", None),), LOCALHOST),
+        ),
+        (None, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF", "ROS_STATIC_PEERS": "a"}, Ros2Network(range=OFF)),
+        ("ros2://?range=system_default&peers=a", {}, Ros2Network(range=SYSTEM_DEFAULT)),
+    ],
+)
+def test_a_ros2_network_is_what_the_url_says_and_else_the_environment(
+    network: "str | None", environment: "dict[str, str]", expected: Ros2Network
+) -> None:
+    assert parse_ros2_network(network, environment) == expected
+
+
+@pytest.mark.parametrize(
+    ("network", "environment", "reason"),
+    [
+        ("ros1://", {}, "is no ROS 2 network"),
+        ("42", {}, "is no ROS 2 network"),
+        ("ros2://233", {}, "a domain id is 0 to 232, not '233'"),
+        ("ros2://-1", {}, "a domain id is 0 to 232, not '-1'"),
+        ("ros2://+1", {}, "a domain id is 0 to 232"),
+        ("ros2://robot", {}, "a domain id is 0 to 232, not 'robot'"),
+        (None, {"ROS_DOMAIN_ID": "zero"}, "ROS_DOMAIN_ID: a domain id is 0 to 232, not 'zero'"),
+        (
+            "ros2://?range=world",
+            {},
+            "a discovery range is one of OFF, LOCALHOST, SUBNET, SYSTEM_DEFAULT, not 'WORLD'",
+        ),
+        (None, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "1"}, "ROS_AUTOMATIC_DISCOVERY_RANGE: a discovery range is"),
+        ("ros2://?interface", {}, "the option 'interface' has no value"),
+        ("ros2://?peers=", {}, "the option 'peers' has no value"),
+        ("ros2://?colour=red", {}, "the option 'colour=red' is none of"),
+        ("ros2://?localhost=yes", {}, "the option 'localhost=yes' is none of"),
+        ("ros2://?peers=10.0.0.7:0", {}, "a peer is host or host:port (IPv4 only), not '10.0.0.7:0'"),
+        ("ros2://?peers=10.0.0.7:65536", {}, "a peer is host or host:port"),
+        ("ros2://?peers=[::1]:7400", {}, "a peer is host or host:port (IPv4 only)"),
+        ("ros2://?peers=fe80::1", {}, "a peer is host or host:port (IPv4 only)"),
+        (None, {"ROS_STATIC_PEERS": "a b"}, "ROS_STATIC_PEERS: 'a b' is no host name"),
+        ("ros2://?peers=" + "h" * 256, {}, "a peer is host or host:port"),
+        (
+            "ros2://?peers=" + ",".join(["h%d" % i for i in range(MAX_PEERS + 1)]),
+            {},
+            "65 static peers; at most 64",
+        ),
+    ],
+)
+def test_a_wrong_ros2_network_says_what_is_wrong(
+    network: "str | None", environment: "dict[str, str]", reason: str
+) -> None:
+    with pytest.raises(InvalidName) as caught:
+        parse_ros2_network(network, environment)
+    assert reason in str(caught.value)
+
+
+def test_a_ros2_networks_url_says_the_same() -> None:
+    text = "ros2://42?interface=eth0&interface=10.0.0.7&peers=10.0.0.8,robot:7412&range=localhost"
+    network = parse_ros2_network(text, {})
+    assert network.url == text
+    assert parse_ros2_network(network.url, {}) == network
+    assert Ros2Network().url == "ros2://0"

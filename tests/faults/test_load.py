@@ -14,8 +14,8 @@ import pytest
 
 import roslet
 from faults.test_peers import MD5, STRING, healthy
-from nodes import Nodes, Raw, descriptors, ports, serve, string_subscriber, wait_until
-from roslet.io import ros1
+from nodes import Nodes, Raw, descriptors, entry_of, ports, ros1, serve, string_subscriber, wait_until
+from roslet.io import ros1 as shell
 
 
 def memory() -> int:
@@ -42,13 +42,13 @@ def test_a_slow_reader_costs_a_bounded_queue_and_harms_nobody(make: Nodes) -> No
             longest = max(longest, time.monotonic() - start)
             time.sleep(0.001)
         took = time.monotonic() - begin
-        (link,) = [one for one in publisher._entry.links if one.callerid == "/raw"]  # type: ignore[union-attr]
+        (link,) = [one for one in entry_of(publisher).links if one.callerid == "/raw"]
         assert len(link.queue) <= 11 and link.queue.high_water <= 11
         dropped = publisher.statistics["dropped"]
         assert dropped > 300 and a.counters == {"send-queue-full": dropped}
         assert memory() - before < 30_000_000
         wait_until(lambda: got and got[-1] == 499, "the other reader has the last message")
-        others = [one.queue.dropped for one in publisher._entry.links if one is not link]  # type: ignore[union-attr]
+        others = [one.queue.dropped for one in entry_of(publisher).links if one is not link]
         assert len(got) + sum(others) == 500
         assert took < 5 and longest < 0.3
         numbers: list[int] = []
@@ -115,18 +115,18 @@ def test_a_thousand_connections_opened_and_abandoned_leave_no_descriptor(make: N
 def test_connections_that_stay_and_say_nothing_make_room_for_those_that_speak(
     make: Nodes, which: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(ros1, "MAX_CONNECTIONS", 50)
+    monkeypatch.setattr(shell, "MAX_CONNECTIONS", 50)
     a = make("a")
     publisher = a.publisher("chatter", STRING)
     raws = [Raw(ports(a)[which]) for _ in range(120)]
     serve(0.1)
     assert a.counters["connection-evicted"] >= 70
-    assert a._shell._accepted[("rpc", "tcpros")[which]] <= 50
+    assert ros1(a).shell._accepted[("rpc", "tcpros")[which]] <= 50
     healthy(a, publisher)
     for raw in raws:
         raw.close()
     wait_until(
-        lambda: a._shell._accepted == {"rpc": 0, "tcpros": 0} or a._shell._accepted["tcpros"] == 0,
+        lambda: ros1(a).shell._accepted == {"rpc": 0, "tcpros": 0} or ros1(a).shell._accepted["tcpros"] == 0,
         "all are gone",
     )
 
@@ -134,7 +134,7 @@ def test_connections_that_stay_and_say_nothing_make_room_for_those_that_speak(
 def test_subscribers_are_not_evicted_and_one_too_many_is_refused(
     make: Nodes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(ros1, "MAX_CONNECTIONS", 5)
+    monkeypatch.setattr(shell, "MAX_CONNECTIONS", 5)
     a = make("a")
     publisher = a.publisher("chatter", STRING)
     raws = []
@@ -160,7 +160,7 @@ publisher = node.publisher("t", "std_msgs/String")
 node.start()
 limit = len(os.listdir("/proc/self/fd")) + 6
 resource.setrlimit(resource.RLIMIT_NOFILE, (limit, limit))
-port = node._engine.tcpros_port
+port = node._network.engine.tcpros_port
 peer = os.popen  # nothing: peers live in another process
 print(port, flush=True)
 input()
@@ -240,7 +240,7 @@ def test_a_list_of_a_hundred_thousand_publishers_is_bounded(make: Nodes) -> None
     uris = [f"http://127.0.0.1:{1 + index % 60000}/x{index}" for index in range(20_000)]
     before = descriptors()
     b.call_node(a.uri, "publisherUpdate", "/chatter", uris, timeout=10)
-    assert len(subscription._entry.publishers) == 1000  # type: ignore[union-attr]
+    assert len(entry_of(subscription).publishers) == 1000
     most = 0
     for _ in range(20):
         serve(0.02)

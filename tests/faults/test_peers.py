@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 import roslet
-from nodes import Nodes, Raw, descriptors, ports, serve, string_subscriber, wait_until
+from nodes import Nodes, Raw, descriptors, ports, ros1, serve, string_subscriber, wait_until
+from roslet.io.select import reactor
 from roslet.wire.tcpros import MAX_FRAME, MAX_HEADER, emit_header
 
 STRING = "std_msgs/String"
@@ -95,7 +96,7 @@ class FakePublisher:
         self.publisher = self.node.publisher(topic, STRING)
         self.listener = socket.create_server(("127.0.0.1", 0))
         self.listener.settimeout(5)
-        self.node._engine.tcpros_port = self.listener.getsockname()[1]
+        ros1(self.node).engine.tcpros_port = self.listener.getsockname()[1]
 
     def take(self) -> Raw:
         """The next subscriber's connection, when its header has come."""
@@ -184,7 +185,12 @@ def fake_accept_while_serving(fake: FakePublisher) -> Raw:
     import threading
 
     made: list[Raw] = []
-    thread = threading.Thread(target=lambda: made.append(fake.accept()))
+
+    def accept() -> None:
+        made.append(fake.accept())
+        reactor().wake()  # it has looked at `made` already, when the header came
+
+    thread = threading.Thread(target=accept)
     thread.start()
     wait_until(lambda: made, "the subscriber connects again")
     thread.join()
@@ -197,7 +203,7 @@ def test_an_oversized_frame_ends_the_link_and_the_bound_is_the_subscriptions(
     assert MAX_FRAME == 256 << 20, "the default that the documentation states"
     b = make("b")
     notes: list[str] = []
-    b._engine.on_note = notes.append
+    ros1(b).engine.on_note = notes.append
     got: list[Any] = []
     b.subscribe("chatter", STRING, got.append, max_message=1000)
     raw = fake.accept()
@@ -236,7 +242,7 @@ def test_a_publisher_with_another_md5sum_is_refused_by_the_subscriber(
 ) -> None:
     b = make("b")
     notes: list[str] = []
-    b._engine.on_note = notes.append
+    ros1(b).engine.on_note = notes.append
     subscription = b.subscribe("chatter", STRING, print)
     fake.accept(md5sum="1" * 32, type="x/Y").close()
     wait_until(lambda: b.counters.get("md5sum-mismatch"), "it is refused")
@@ -268,7 +274,7 @@ def test_random_bytes_on_every_port_leave_the_node_well(make: Nodes, seed: int) 
     a.start()
     b.publisher("scan", STRING)
     a.subscribe("scan", STRING, print, qos=roslet.QoS(reliability="best_effort"))
-    udp = [sock.getsockname() for sock in a._shell._datagrams._receiving.values()]
+    udp = [sock.getsockname() for sock in ros1(a).shell._datagrams._receiving.values()]
     assert len(udp) == 1
     before = descriptors()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
@@ -531,8 +537,8 @@ def test_datagrams_that_cannot_be_sent_or_received_are_counted(
     def full(*given: Any) -> Any:
         raise OSError("no")
 
-    monkeypatch.setattr(type(a._shell._datagrams), "_socket", full)
-    a._shell._datagrams._sending = None
+    monkeypatch.setattr(type(ros1(a).shell._datagrams), "_socket", full)
+    ros1(a).shell._datagrams._sending = None
     publisher.publish(data="x")
     assert a.counters == {"udp-not-sent": 1}
     subscription.close()
@@ -549,7 +555,7 @@ def test_a_client_of_the_slave_api_that_does_not_read_is_cut_off(
     monkeypatch.setattr(RpcServer, "max_unsent", 100_000)
     a = make("a")
     for index in range(10_000):  # an answer of a megabyte
-        a._engine.publications[f"/t{index}"] = a._engine.publications["/rosout"]
+        ros1(a).engine.publications[f"/t{index}"] = ros1(a).engine.publications["/rosout"]
     request = call("getPublications", b"<param><value>/x</value></param>")
     with Raw(ports(a)[0]) as raw:
         raw.sock.setblocking(False)
@@ -583,8 +589,8 @@ def test_messages_that_wait_when_the_node_closes_are_counted(make: Nodes) -> Non
 
 def test_a_name_that_another_node_has_taken_is_counted(make: Nodes, master: Any) -> None:
     a = make("a")
-    a._engine.registrations.check = 0.05
-    wait_until(lambda: a._engine.registrations.settled, "it is registered")
+    ros1(a).engine.registrations.check = 0.05
+    wait_until(lambda: ros1(a).engine.registrations.settled, "it is registered")
     # A master that does not tell the first node.
     monkey = master.master
     monkey._apis["/a"] = "http://127.0.0.1:9/"

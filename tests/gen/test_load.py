@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import pathlib
+from typing import Any
 
 import pytest
 
 import roslet
+from roslet.errors import DefinitionError
+from roslet.gen.runtime import message_class, message_class_of
 
 
 def package(folder: pathlib.Path, name: str, build_tool: str = "", **messages: str) -> pathlib.Path:
@@ -52,3 +55,23 @@ def test_a_type_that_is_not_there_is_no_attribute(tmp_path: pathlib.Path) -> Non
         _ = types.load_i.msg.Other
     with pytest.raises(AttributeError, match="no package other was loaded"):
         _ = types.other
+
+
+def test_what_a_peer_says_of_a_name_changes_nothing_for_others() -> None:
+    kind: Any = message_class("ros1", "geometry_msgs/PointStamped")
+    text = f"Point point\nstring note\n{'=' * 80}\nMSG: geometry_msgs/Point\nint16 x\n"
+    theirs: Any = message_class_of("geometry_msgs/PointStamped", text)
+    assert theirs(note="n").point.x == 0 and theirs._spec[0][1]._spec[0][1] == "int16"
+    assert theirs.deserialize(theirs(note="n").serialize()).note == "n"
+    assert theirs._md5sum != kind._md5sum and theirs._full_text == text
+    other: Any = message_class_of("geometry_msgs/PointStamped", "int8 other\n")
+    assert other(other=1).serialize() == b"\1"
+    assert message_class("ros1", "geometry_msgs/PointStamped") is kind
+    assert message_class("ros1", "geometry_msgs/Point")._spec[0][1] == "float64"
+    assert kind._md5sum == "c63aecb41bfdfd6b7e1fac37c7cbe7bf"
+
+
+@pytest.mark.parametrize("text", ["Thing thing\n", "int32\n", f"int32 x\n{'=' * 80}\nno name\n"])
+def test_a_wrong_definition_of_a_peer_is_refused(text: str) -> None:
+    with pytest.raises(DefinitionError):
+        message_class_of("load_peer/Robot", text)

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import roslet
-from nodes import Nodes, descriptors, wait_until
+from nodes import Nodes, descriptors, ros1, wait_until
 
 ADD = "rospy_tutorials/AddTwoInts"
 
@@ -42,7 +42,7 @@ def test_a_call_that_is_not_persistent_leaves_no_connection(make: Nodes) -> None
     for _ in range(30):
         client.call(a=1, b=2, timeout=3)
     wait_until(lambda: descriptors() <= before, "no descriptor is left")
-    assert server._engine.services["/add"].links == []
+    assert ros1(server).engine.services["/add"].links == []
 
 
 def test_a_persistent_client_keeps_one_connection_and_several_calls_in_flight(make: Nodes) -> None:
@@ -51,8 +51,10 @@ def test_a_persistent_client_keeps_one_connection_and_several_calls_in_flight(ma
         client.call(a=0, b=0, timeout=3)
         futures = [client.call_async(a=index, b=index) for index in range(50)]
         assert [future.result(3).sum for future in futures] == [2 * index for index in range(50)]
-        assert len(server._engine.services["/add"].links) == 1
-    wait_until(lambda: server._engine.services["/add"].links == [], "the connection ends with the client")
+        assert len(ros1(server).engine.services["/add"].links) == 1
+    wait_until(
+        lambda: ros1(server).engine.services["/add"].links == [], "the connection ends with the client"
+    )
     with pytest.raises(roslet.NodeClosed):
         client.call(a=1, b=1)
 
@@ -125,7 +127,7 @@ def test_a_call_that_is_not_answered_times_out_and_is_forgotten(make: Nodes) -> 
         lambda: (
             not any(
                 kind == "out" and "ServiceClientLink" in type(stream.machine).__name__
-                for stream, kind in user._shell.streams.items()
+                for stream, kind in ros1(user).shell.streams.items()
             )
         ),
         "the connection is given up",

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 import roslet
-from nodes import Nodes, Raw, serve, string_subscriber, wait_until
-from roslet.node import topics
+from nodes import Nodes, Raw, ros1, serve, string_subscriber, wait_until
+from roslet.node.ros1 import topics
 
 STRING = "std_msgs/String"
 
@@ -267,7 +267,7 @@ def test_a_local_subscription_that_closes_gets_nothing_more(make: Nodes) -> None
 
 def test_no_callback_runs_after_close(make: Nodes) -> None:
     _, b, publisher, got = pair(make)
-    subscription = b._subscriptions[0]
+    subscription = ros1(b)._subscriptions[0]
 
     def callback(message: Any) -> None:
         got.append(message)
@@ -282,7 +282,7 @@ def test_no_callback_runs_after_close(make: Nodes) -> None:
 
 def test_an_exception_of_a_callback_comes_out_of_spin_and_loses_nothing(make: Nodes) -> None:
     _, b, publisher, got = pair(make)
-    subscription = b._subscriptions[0]
+    subscription = ros1(b)._subscriptions[0]
 
     def callback(message: Any) -> None:
         got.append(message.data)
@@ -306,7 +306,7 @@ def test_ctrl_c_in_a_callback_leaves_the_connection_whole(make: Nodes) -> None:
         if message.data == "1":
             raise KeyboardInterrupt
 
-    b._subscriptions[0]._callback = callback
+    ros1(b)._subscriptions[0]._callback = callback
     for index in range(4):
         publisher.publish(data=str(index))
     with pytest.raises(KeyboardInterrupt):

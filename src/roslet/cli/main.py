@@ -33,9 +33,11 @@ COMMANDS = {
     "node": "list, show, ping and end nodes",
     "service": "list, show and call services",
     "param": "read and write parameters",
+    "action": "list, show and use actions",
     "interface": "show message, service and action definitions",
     "gen": "generate code from definitions",
     "master": "be a ROS 1 master",
+    "doctor": "find what keeps nodes from hearing each other",
     "run": "run an unmodified rospy program, without ROS",
     "bench": "measure speed against peers and a raw socket",
     "demo": "see it work: master, nodes, rates, round trips, in about 20 seconds",
@@ -127,7 +129,11 @@ def _quit_on_sigterm() -> Any:
     """Make SIGTERM an exception; the handler to put back, None where this thread may not set one."""
 
     def terminated(number: int, frame: FrameType | None) -> None:
-        raise Terminated(TERMINATED)
+        interrupts = sys.modules.get(
+            "roslet.io.interrupts"
+        )  # where there is a node; it is not imported for less
+        if interrupts is None or not interrupts.put_off(number, frame):
+            raise Terminated(TERMINATED)
 
     try:
         return signal.signal(signal.SIGTERM, terminated)

@@ -12,6 +12,7 @@ from roslet.compat import logs
 from roslet.compat.rospy import rostime
 from roslet.compat.session import session
 from roslet.errors import CallTimeout, Fault, Unreachable
+from roslet.io.interrupts import on_sigint, put_off
 from roslet.node import Node
 from roslet.node.log import DEBUG, ERROR, FATAL, INFO, WARN
 from roslet.node.values import parse_value
@@ -127,9 +128,11 @@ def _take_signals() -> None:
 
 
 def _on_signal(number: int, frame: FrameType | None) -> None:
+    if put_off(number, frame):
+        return  # the end of the node uses the loop, which is in the midst of something
     session.shut_down(f"signal-{number}")
     before: Callable[..., Any] | int | None = _before.get(number)
-    if callable(before) and before is not signal.default_int_handler and before is not _on_signal:
+    if callable(before) and before not in (signal.default_int_handler, on_sigint, _on_signal):
         before(number, frame)
 
 

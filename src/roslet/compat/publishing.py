@@ -12,10 +12,11 @@ from roslet.compat.rospy.msg import AnyMsg
 from roslet.compat.session import session
 from roslet.engine.ros1.links import PublisherLink
 from roslet.errors import InvalidMessage, NodeClosed
-from roslet.node import QoS, Subscription
+from roslet.node import QoS
+from roslet.node.ros1.topics import Ros1Publisher, Ros1Subscription
 
 if TYPE_CHECKING:
-    from roslet.node import Node, Publisher
+    from roslet.node import Node, Subscription
 
 # queue_size=0 asks for a queue without bound. This many messages for one slow subscriber are more than any program means,
 # and an end to what it can hold.
@@ -44,7 +45,7 @@ class PublishedTopic:
         self.queue_size: int | None = None
         self.headers: dict[str, str] = {}
         self.users = 0
-        self.handle: Publisher | None = None
+        self.handle: Ros1Publisher | None = None
         self._events: Worker | None = None
         self._asked = False
 
@@ -124,10 +125,10 @@ class PublishedTopic:
             return  # nobody could read it
         size = self.queue_size
         qos = QoS(history="keep_all") if size is None else QoS(depth=size or UNBOUNDED)
-        self.handle = node.publisher(self.name, self.type, qos=qos)
+        self.handle = node._ros1("rospy").publisher(node.resolve(self.name), self.type, qos)
         self._configure(self.handle)
 
-    def _configure(self, handle: Publisher) -> None:
+    def _configure(self, handle: Ros1Publisher) -> None:
         entry = handle._entry
         if entry is None:
             return
@@ -147,7 +148,7 @@ class PublishedTopic:
             entry.on_link = changed
             self._watch_local(handle)
 
-    def _watch_local(self, handle: Publisher) -> None:
+    def _watch_local(self, handle: Ros1Publisher) -> None:
         """This program's own subscribers have no connection; the listeners hear of them all the same."""
         attach, detach, events = handle._attach, handle._detach, self._events
 
@@ -205,8 +206,8 @@ class PublishedTopic:
         handle = self.handle
         if handle is None:
             return
-        if isinstance(link, Subscription):
-            link._receive_local(handle._for_local(link, message))
+        if isinstance(link, Ros1Subscription):
+            link._deliver_later(handle._for_local(link, message))
             return
         if not isinstance(link, PublisherLink) or link.closing:
             return

@@ -13,11 +13,13 @@ from roslet.compat.rospy import core
 from roslet.compat.rospy.msg import AnyMsg
 from roslet.compat.session import session
 from roslet.node import QoS
+from roslet.wire.tcpros import MAX_FRAME
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from roslet.node import Node, Subscription
+    from roslet.node import Node
+    from roslet.node.ros1.topics import Ros1Subscription
 
     Callback = tuple[Callable[..., object], Any]
 
@@ -32,7 +34,7 @@ class SubscribedTopic:
         self.data_class = data_class
         self.callbacks: list[Callback] = []
         self.users = 0
-        self.handle: Subscription | None = None
+        self.handle: Ros1Subscription | None = None
         self.worker = Worker(f"topic {name}", self._work, queue_size)
         self.type = getattr(data_class, "_numpy_of", data_class)
         self._simplify = None
@@ -97,7 +99,15 @@ class SubscribedTopic:
         kind = "*" if self.data_class is AnyMsg else self.type
         # Messages wait in the worker; what this program publishes itself must not be dropped before it gets there.
         qos = QoS(history="keep_all")
-        self.handle = node.subscribe(self.name, kind, self._received, qos=qos, with_link=True)  # type: ignore[arg-type]
+        network = node._ros1("rospy")
+        self.handle = network.subscription(
+            node.resolve(self.name),
+            kind,
+            self._received,
+            qos,
+            MAX_FRAME,
+            with_link=True,
+        )
 
     def add(self, callback: Callback | None) -> None:
         """One rospy.Subscriber more. From a latched topic it gets the last message, if there was one already."""
@@ -164,7 +174,7 @@ class SubscribedTopic:
                 function(message)
             else:
                 function(message, argument)
-        except Exception:
+        except Exception:  # the program's own code, which may raise anything; rospy logs it and goes on
             if not session.shutting_down.is_set():
                 core.logerr("bad callback: %s\n%s" % (function, traceback.format_exc()))
 
@@ -176,7 +186,7 @@ class SubscribedTopic:
     def _own_header(self) -> dict[str, str]:
         """What this program's own publisher would say of itself."""
         node = session.node
-        publisher = node._publishers.get(self.name) if node is not None else None
+        publisher = node._ros1("rospy")._publishers.get(self.name) if node is not None else None
         entry = publisher._entry if publisher is not None else None
         return {} if entry is None else entry.header()
 

@@ -17,6 +17,8 @@ import threading
 from collections import deque
 from time import monotonic, sleep
 
+from roslet.io import interrupts
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -120,6 +122,7 @@ class Reactor:
         self._lent = False  # whether the background thread has ever handed the loop to a spinner
         self._owner = 0  # the thread that has the turn
         self._spinners = 0
+        self._user_turns = 0  # of the loop, in which user code was served
         self._idle = threading.Event()
         self._idle.set()
         self._thread: threading.Thread | None = None
@@ -282,13 +285,8 @@ class Reactor:
 
     def run_turn(self, timeout: float) -> None:
         """Serve one turn of the loop, which waits at most `timeout` seconds for something to do."""
-        looks = []
-
-        def turned() -> bool:
-            looks.append(True)
-            return len(looks) > 2  # looked at before the turn is taken, before the turn, and after it
-
-        self.run_until(turned, timeout)
+        before = self._user_turns
+        self.run_until(lambda: self._user_turns != before, timeout)
 
     @staticmethod
     def _left(end: float | None, most: float) -> float:
@@ -348,6 +346,7 @@ class Reactor:
             now = monotonic()
             if now >= soonest:
                 self._run_timers(now, user)
+        self._user_turns += user
         if self._waiting:
             with self._changed:
                 self._changed.notify_all()
@@ -482,6 +481,7 @@ def reactor() -> Reactor:
     with _reactor_lock:
         if _reactor is None:
             _reactor = Reactor()
+        interrupts.watch(_reactor.lock)
         return _reactor
 
 

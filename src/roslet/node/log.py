@@ -64,14 +64,10 @@ class Log:
         frame = sys._getframe(min(depth, _stack_depth()))
         try:
             entry: Any = publisher.type()
-            entry.header.stamp = self._node.now()
-            entry.level = level
-            entry.name = self._node.name
-            entry.msg = text
             entry.file = os.path.basename(frame.f_code.co_filename)
             entry.function = frame.f_code.co_name
             entry.line = frame.f_lineno
-            entry.topics = self._node._published_topics()
+            self._node._network.fill_log_entry(entry, level, text)
             publisher.publish(entry)
         except NodeClosed:
             return

@@ -272,6 +272,38 @@ def test_many_participants_all_meet() -> None:
         assert sorted(numbers(host)) == list(range(12)), number
 
 
+def test_a_newcomer_is_greeted_until_it_shows_that_it_knows_us() -> None:
+    network = Network()
+    network.keep = True
+    one = network.host()
+    network.run(2.0)
+    newcomer = network.host()
+
+    def greetings() -> int:
+        """Announcements of the first that go to the newcomer alone."""
+        own, theirs = one.participant.guid_prefix, newcomer.participant.guid_prefix
+        mine = [seen for seen in network.seen if seen[8:20] == own and b"\x00\x01\x00\xc2" in seen]
+        network.seen = []
+        return len([seen for seen in mine if theirs in seen[20:]])
+
+    for _ in range(3):
+        # It is announced, and hears nothing.
+        participant = newcomer.participant
+        participant.spdp.change(participant.spdp.own, network.now)
+        participant.handle_deadline(network.now)
+        for parts, _ in participant.datagrams_to_send(network.now):
+            one.participant.receive_datagram(b"".join(parts), (newcomer.address, 7410), network.now)
+        network.loss = 1.0
+        network.run(0.05)
+        assert greetings() == 1
+    network.loss = 0.0
+    network.run(1.0)
+    assert newcomer.participant.spdp.remotes
+    greetings()
+    network.run(10.0)
+    assert greetings() == 0
+
+
 def test_another_domain_is_not_seen() -> None:
     network = Network()
     one, other = network.host(), network.host()

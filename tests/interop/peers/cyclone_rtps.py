@@ -4,6 +4,7 @@ ROLE is talker or listener, of String on rt/chatter.
 Prints one line a fact: `ready`, `heard TEXT`. Ends by itself after COUNT facts, or 30 seconds.
 """
 
+import os
 import sys
 import time
 from dataclasses import dataclass
@@ -36,7 +37,7 @@ def main():
         Policy.Durability.TransientLocal if "transient_local" in sys.argv else Policy.Durability.Volatile,
         Policy.History.KeepLast(10),
     )
-    participant = DomainParticipant(0)
+    participant = DomainParticipant(int(os.environ.get("ROS_DOMAIN_ID", "0")))
     topic = Topic(participant, "rt/chatter", String_)
     ends = time.monotonic() + 30.0
     if role == "talker":

@@ -1,8 +1,10 @@
 """A roslet peer on the participant itself, without a node. roslet_rtps.py ROLE COUNT [SIZE] [best_effort] [transient_local]
+[small_fragments] [ros2://...]
 
 The same facts in the same words as rclpy_rtps.py and cyclone_rtps.py.
 """
 
+import os
 import struct
 import sys
 import time
@@ -10,6 +12,7 @@ import time
 from roslet.engine.rtps import events
 from roslet.io.select import Reactor
 from roslet.io.udp import Domain
+from roslet.names import parse_ros2_network
 from roslet.wire.rtps import qos
 from roslet.wire.rtps.qos import Qos
 
@@ -40,7 +43,9 @@ def main():
             say("incompatible", *event.policies)
 
     reactor = Reactor()
-    domain = Domain(reactor, on_event)
+    url = next((word for word in sys.argv if word.startswith("ros2:")), None)
+    sizes = {"fragment_size": 1400} if "small_fragments" in sys.argv else {}
+    domain = Domain(reactor, on_event, parse_ros2_network(url, os.environ), **sizes)
     participant = domain.participant
     ends = time.monotonic() + 30.0
     with reactor.lock:

@@ -151,15 +151,25 @@ def test_departures_carry_the_status_and_the_key() -> None:
         assert set(gone) == {prefix + guid.ENTITYID_PARTICIPANT for prefix in participants(name)}
 
 
-def test_cyclone_fragments_give_the_sample_back() -> None:
+def put_together(name: str) -> list[bytes]:
+    """The samples that came in fragments, without encapsulation header and string length."""
     parts: dict[int, bytearray] = {}
-    for _, submessages in messages("cyclone_topic.pcap"):
+    for _, submessages in messages(name):
         for one in submessages:
             if isinstance(one, DataFrag):
                 sample = parts.setdefault(one.sequence, bytearray(one.sample_size))
                 start = (one.first - 1) * one.fragment_size
                 sample[start : start + len(one.payload)] = one.payload
-    assert [bytes(sample[8:]) for sample in parts.values()] == [
+    return [bytes(sample[8:]) for sample in parts.values()]
+
+
+def test_fast_dds_fragments_give_the_sample_back() -> None:
+    (sample,) = put_together("fastdds_large.pcap")
+    assert sample.rstrip(b"\0") == b"hello 0" + b"x" * 66000
+
+
+def test_cyclone_fragments_give_the_sample_back() -> None:
+    assert put_together("cyclone_topic.pcap") == [
         b"hello 0" + b"x" * 16000 + b"\0",
         b"hello 1" + b"x" * 16000 + b"\0",
     ]
@@ -180,6 +190,30 @@ def test_a_reply_names_the_request_that_it_answers() -> None:
         assert answered.related == (readers["rr/askReply"], request.sequence)
         assert asked.related is not None
         assert asked.related[0] == readers["rr/askReply"]
+
+
+def test_cyclone_puts_who_asks_and_the_number_before_request_and_reply() -> None:
+    name = "cyclone_service.pcap"
+    writers = {value.topic: value.guid for _, value in endpoints(name) if value.writer}
+    requests, replies = [
+        [one.payload for head, one in samples(name, writers[topic][12:]) if one.flags & FLAG_D]
+        for topic in ("rq/askRequest", "rr/askReply")
+    ]
+    numbers = [(0x1122334455667788).to_bytes(8, "little") + number.to_bytes(8, "little") for number in (1, 2)]
+    assert [bytes(one[4:20]) for one in requests] == numbers
+    assert [bytes(one[4:20]) for one in replies] == numbers
+    assert [one[20] for one in requests] == [one[20] for one in replies] == [1, 0]
+
+
+def test_jazzy_says_the_same_as_kilted_of_its_topic() -> None:
+    found = []
+    for name in ("fastdds_topic.pcap", "jazzy_topic.pcap"):
+        chatter = [value for _, value in endpoints(name) if value.topic == "rt/chatter"]
+        # Kilted no longer says DURABILITY_SERVICE of readers, which have none.
+        said = [(one.writer, one.type_name, one.qos.replace(durability_service=None)) for one in chatter]
+        found.append(sorted(said, key=lambda one: one[0]))
+    assert len(found[0]) == 2
+    assert found[0] == found[1]
 
 
 def test_liveliness_messages_of_cyclone() -> None:

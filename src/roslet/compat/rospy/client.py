@@ -128,7 +128,7 @@ def get_param_cached(param_name: str, default: Any = _unspecified) -> Any:
     if node is None:
         return get_param(param_name, default)
     name = names.resolve_name(param_name)
-    known = node._engine.parameters.get(name, _unspecified)
+    known = node._ros1("rospy").engine.parameters.get(name, _unspecified)
     if known is _unspecified:
         known = node.on_parameter(name, _ignore)
     # An empty dictionary is how the master says that there is none.
@@ -176,9 +176,9 @@ def _refresh(name: str) -> None:
     node = session.node
     if node is None:
         return
-    for key in list(node._engine.parameters):
+    for key in list(node._ros1("rospy").engine.parameters):
         if (key + "/").startswith(name + "/") or (name + "/").startswith(key + "/"):
-            node._engine.parameters[key] = get_param(key, {})
+            node._ros1("rospy").engine.parameters[key] = get_param(key, {})
 
 
 def search_param(param_name: str) -> str | None:

@@ -5,7 +5,7 @@ Indexed by participant and by writer, so that what one peer does costs in propor
 
 from roslet.engine.rtps import events
 from roslet.engine.rtps.qos import incompatible
-from roslet.engine.rtps.spdp import addresses_of
+from roslet.engine.rtps.reach import addresses_of
 from roslet.errors import ProtocolError
 from roslet.wire.rtps import endpoint_data, guid, inline_qos
 from roslet.wire.rtps.data import FLAG_D, FLAG_K
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from roslet.engine.rtps.limits import Limits
     from roslet.engine.rtps.liveliness import Liveliness
     from roslet.engine.rtps.outbox import Address
+    from roslet.engine.rtps.reach import Network
     from roslet.engine.rtps.reader import Reader, WriterProxy
     from roslet.engine.rtps.spdp import RemoteParticipant
     from roslet.engine.rtps.writer import Writer
@@ -39,6 +40,7 @@ class Matching:
         match_own: bool,
         deliver: "Callable[[Any], None]",
         count: "Callable[[str], None]",
+        networks: "tuple[Network, ...]" = (),
     ) -> None:
         self.writers: dict[bytes, Writer] = {}
         self.readers: dict[bytes, Reader] = {}
@@ -53,6 +55,15 @@ class Matching:
         self._match_own = match_own
         self._deliver = deliver
         self._count = count
+        self._networks = networks
+
+    def move(self, own_addresses: "tuple[Address, ...]", networks: "tuple[Network, ...]", now: float) -> None:
+        """Our interfaces have changed."""
+        self._own_addresses = own_addresses
+        self._networks = networks
+        if self._match_own:
+            for one in list(self.writers.values()) + list(self.readers.values()):
+                self._discovered(one.data, now)
 
     # -- ours
 
@@ -167,9 +178,9 @@ class Matching:
         if remote is None:
             return ()
         return (
-            addresses_of(found.unicast, remote.host)
+            addresses_of(found.unicast, remote.host, self._networks)
             or remote.default
-            or addresses_of(found.multicast, remote.host)
+            or addresses_of(found.multicast, remote.host, self._networks)
         )
 
     def _vendor(self, found: "EndpointData") -> bytes:
@@ -180,6 +191,8 @@ class Matching:
 
     def _consider_reader(self, writer: "Writer", found: "EndpointData", now: float) -> None:
         if found.topic != writer.data.topic or found.type_name != writer.data.type_name:
+            return
+        if writer.accepts is not None and not writer.accepts(found):
             return
         policies = incompatible(writer.qos, found.qos)
         if policies:

@@ -10,11 +10,12 @@ from roslet.engine.rtps.limits import Limits
 from roslet.engine.rtps.liveliness import Liveliness
 from roslet.engine.rtps.matching import Matching
 from roslet.engine.rtps.outbox import Outbox
+from roslet.engine.rtps.reach import addresses_of
 from roslet.engine.rtps.reader import Reader
 from roslet.engine.rtps.receiver import Receiver
 from roslet.engine.rtps.schedule import Alarm
 from roslet.engine.rtps.sedp import Sedp
-from roslet.engine.rtps.spdp import RemoteParticipant, Spdp, addresses_of
+from roslet.engine.rtps.spdp import RemoteParticipant, Spdp
 from roslet.engine.rtps.writer import FRAGMENT_SIZE, Writer
 from roslet.errors import ProtocolError
 from roslet.wire.rtps import guid, header, participant_data, participant_message
@@ -28,12 +29,15 @@ from roslet.wire.rtps.times import INFINITE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any
 
     from roslet.engine.rtps.outbox import Address, Datagram
+    from roslet.engine.rtps.reach import Network
     from roslet.engine.rtps.reader import KeyOf, Sink, WriterProxy
     from roslet.wire.rtps.data import Data
     from roslet.wire.rtps.locator import Locator
+    from roslet.wire.rtps.participant_data import ParticipantData
     from roslet.wire.rtps.qos import Qos
 
 DEFAULT_LEASE = 20.0
@@ -50,6 +54,8 @@ class Participant:
     metatraffic, default   locators at which discovery and samples reach us
     announce_to     addresses of announcements: the multicast group, static peers
     epoch           nanoseconds of the Unix epoch when `now` is 0
+    multicast       the group's locator where we listen to it
+    networks        our interfaces' addresses and the length of their networks' prefixes; empty where they are not known
     """
 
     def __init__(
@@ -67,6 +73,8 @@ class Participant:
         fragment_size: int = FRAGMENT_SIZE,
         match_own: bool = True,
         limits: "Limits | None" = None,
+        multicast: "tuple[Locator, ...]" = (),
+        networks: "tuple[Network, ...]" = (),
     ) -> None:
         if len(guid_prefix) != 12:
             raise ValueError("a GUID prefix has 12 octets, not %d" % len(guid_prefix))
@@ -82,6 +90,7 @@ class Participant:
             self.guid_prefix,
             domain_id=domain_id,
             metatraffic_unicast=metatraffic,
+            metatraffic_multicast=multicast,
             default_unicast=default,
             lease=int(lease * 1000000000),
             user_data=user_data,
@@ -96,7 +105,14 @@ class Participant:
         self._asserting = Alarm(self._schedule, self._assert_automatic)
         self._asserted = NEVER
         self.spdp = Spdp(
-            own, self._common, announce_to, period, self._participant_discovered, self._participant_lost
+            own,
+            self._common,
+            announce_to,
+            period,
+            self._participant_discovered,
+            self._participant_lost,
+            self._answered,
+            networks,
         )
         self.sedp = Sedp(self.guid_prefix, self._common.quiet(), self._builtin_sample)
         self._liveliness = Liveliness(self._schedule, self._deliver, self._heard)
@@ -109,6 +125,7 @@ class Participant:
             match_own,
             self._deliver,
             self._count,
+            networks,
         )
         self.writers = self._matching.writers
         self.readers = self._matching.readers
@@ -172,6 +189,14 @@ class Participant:
         """Do what is due: announcements, heartbeats, acknowledgements, leases, liveliness."""
         self._schedule.ring(now)
 
+    def move(
+        self, own: "ParticipantData", to: "tuple[Address, ...]", networks: "tuple[Network, ...]", now: float
+    ) -> None:
+        """Our interfaces have changed: from now on the locators of `own` hold, announcements go `to` these addresses, and
+        peers are told. `own` is `spdp.own` with some of its locators replaced."""
+        self._matching.move(addresses_of(own.default_unicast, "")[:1], networks, now)
+        self.spdp.move(own, to, networks, now)
+
     def close(self, now: float) -> None:
         """Depart: the datagrams that say so are the last ones to send."""
         if not self._closed:
@@ -188,13 +213,15 @@ class Participant:
         now: float,
         keyed: bool = False,
         unicast: "tuple[Locator, ...]" = (),
+        accepts: "Callable[[EndpointData], bool] | None" = None,
     ) -> Writer:
         """A writer of a topic, by its names in DDS, announced from now on; `unicast`: where answers to it are to go,
-        the participant's default locators where empty."""
+        the participant's default locators where empty; `accepts` may turn down readers that would match."""
         endpoint = self._endpoint(topic, type_name, qos, b"\x02" if keyed else b"\x03", unicast)
         kind, lease = qos.liveliness
         wrote = self._wrote if kind == MANUAL_BY_PARTICIPANT and lease < INFINITE else None
         writer = Writer(endpoint, self._common, self._fragment_size, wrote)
+        writer.accepts = accepts
         self._all_writers[writer.entity_id] = writer
         self.sedp.announce(endpoint, now)
         self._matching.add_writer(writer, now)
@@ -307,6 +334,9 @@ class Participant:
         for reader, writer in self.sedp.match(remote, now):
             self._matching.route(reader, writer)
         self._matching.participant_changed(remote.data.guid_prefix, now)
+
+    def _answered(self, prefix: bytes) -> bool:
+        return self.sedp.answered(prefix)
 
     def _participant_lost(self, remote: RemoteParticipant, now: float) -> None:
         prefix = remote.data.guid_prefix

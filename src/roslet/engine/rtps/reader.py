@@ -13,7 +13,7 @@ from roslet.wire.rtps import info_dst, inline_qos, number_set
 from roslet.wire.rtps.ack_nack import AckNack
 from roslet.wire.rtps.data import FLAG_D, FLAG_K, Data
 from roslet.wire.rtps.data_frag import FLAG_K as FRAGMENT_OF_KEY
-from roslet.wire.rtps.guid import VENDORID_ROSLET
+from roslet.wire.rtps.guid import VENDORID_EPROSIMA, VENDORID_ROSLET
 from roslet.wire.rtps.nack_frag import NackFrag
 from roslet.wire.rtps.qos import KEEP_ALL
 from roslet.wire.rtps.times import INFINITE
@@ -192,8 +192,8 @@ class Reader:
         sequence = value.sequence
         if self._period is not None:
             self._note_deadline(now)
-        if sequence == proxy.next and (proxy.synced or not proxy.reliable):
-            # The ordinary case first.
+        if sequence == proxy.next and (proxy.synced or not proxy.reliable or sequence == 1):
+            # The ordinary case first. There is nothing before the first sample, whatever the writer has told us.
             if proxy.plain and self.sink is not None:
                 proxy.next = sequence + 1
                 proxy.synced = True
@@ -214,6 +214,10 @@ class Reader:
             self._hand_over(proxy, value, time, now)
             return
         self._hold(proxy, sequence, value, time)
+        if not proxy.synced and proxy.ack_at is None:
+            # Its heartbeat was lost, or came before we knew it, and the next one may be seconds away.
+            proxy.last = max(proxy.last, sequence)
+            self._answer_at(proxy, max(now, proxy.nacked_at + NACK_INTERVAL))
 
     def _hold(self, proxy: WriterProxy, sequence: int, value: "Data", time: "int | None") -> None:
         if sequence in proxy.held:
@@ -421,6 +425,7 @@ class Reader:
         if start <= proxy.next:
             if base > proxy.next:
                 self._skip_to(proxy, base, False, now)
+            proxy.synced = True  # everything below is accounted for
         else:
             for sequence in range(start, min(base, start + number_set.MAX_BITS)):
                 self._never(proxy, sequence)
@@ -472,7 +477,9 @@ class Reader:
             proxy.hellos += 1
             delay = HELLO_DELAY * (1 << proxy.hellos)
             proxy.hello_at = now + delay if proxy.hellos < HELLO_TIMES else None
-            self._send_acknack(proxy, [], False)
+            # Fast DDS answers at once only to this form, which the specification does not have.
+            base = 0 if proxy.vendor == VENDORID_EPROSIMA and proxy.next == 1 else proxy.next
+            self._send_acknack(proxy, base, [], False)
         for at in (proxy.ack_at, proxy.retry_at, proxy.hello_at):
             if at is not None:
                 proxy.alarm.set(at)
@@ -501,7 +508,7 @@ class Reader:
                 proxy.retry_at = now + proxy.retry
         if proxy.asked or missing or not partial:
             proxy.asked = False
-            self._send_acknack(proxy, missing, not lacking)
+            self._send_acknack(proxy, proxy.next, missing, not lacking)
         for sequence, lacks in partial:
             proxy.frag_count += 1
             request = NackFrag(self.entity_id, proxy.guid[12:], sequence, lacks, proxy.frag_count)
@@ -510,9 +517,10 @@ class Reader:
             )
         proxy.reply = ()
 
-    def _send_acknack(self, proxy: WriterProxy, missing: "list[int]", final: bool) -> None:
+    def _send_acknack(self, proxy: WriterProxy, base: int, missing: "list[int]", final: bool) -> None:
         proxy.count += 1
-        state = number_set.of(proxy.next, missing)
+        # Who has the last number that there is cannot say so.
+        state = number_set.of(min(base, number_set.MAX_NUMBER), missing)
         answer = AckNack(self.entity_id, proxy.guid[12:], state, proxy.count, final)
         self._common.outbox.send(
             (self._common.header, proxy.info_dst, answer.emit()), proxy.reply or proxy.addresses

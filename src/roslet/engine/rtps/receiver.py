@@ -4,7 +4,7 @@ The datagram that nearly all are, INFO_TS and DATA of a known writer in little e
 everything else, and whatever follows, goes the general way.
 """
 
-from roslet.engine.rtps.spdp import addresses_of
+from roslet.engine.rtps.reach import addresses_of
 from roslet.wire.primitives import unpacker
 from roslet.wire.rtps import (
     ack_nack,

@@ -116,6 +116,12 @@ class Sedp:
             self.readers[ours].unmatch(prefix + theirs, now)
         return [prefix + theirs for _, theirs, _ in READERS]
 
+    def answered(self, prefix: bytes) -> bool:
+        """Whether a matched participant has acknowledged anything of ours, or has nothing to do it with."""
+        found = [self.writers[ours].proxies.get(prefix + theirs) for ours, theirs, _ in WRITERS]
+        counts = [one.count for one in found if one is not None]
+        return not counts or max(counts) >= 0
+
     def _announcer(self, data: EndpointData) -> Writer:
         if data.writer:
             return self.writers[guid.ENTITYID_SEDP_BUILTIN_PUBLICATIONS_WRITER]

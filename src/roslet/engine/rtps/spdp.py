@@ -5,6 +5,7 @@ participant renews its lease; only its own announcement makes it known.
 """
 
 from roslet.engine.rtps.events import ParticipantDiscovered, ParticipantLost
+from roslet.engine.rtps.reach import addresses_of, near
 from roslet.engine.rtps.schedule import Alarm
 from roslet.errors import ProtocolError
 from roslet.wire.rtps import info_dst, info_ts, inline_qos, participant_data
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from roslet.engine.rtps.common import Common
     from roslet.engine.rtps.outbox import Address
-    from roslet.wire.rtps.locator import Locator
+    from roslet.engine.rtps.reach import Network
     from roslet.wire.rtps.participant_data import ParticipantData
 
 ABSENT, ALIVE = "ABSENT", "ALIVE"
@@ -42,34 +43,47 @@ TRANSITIONS = {
 # lost.
 QUICK = 5
 QUICK_PERIOD = 0.1
-# Addresses of one peer that everything is sent to, where none is known to be the right one.
-MAX_ADDRESSES = 4
-
-
-def addresses_of(locators: "tuple[Locator, ...]", heard_from: str) -> "tuple[Address, ...]":
-    """Where to send: the address that the peer was heard from if it is among its locators, else the first few usable."""
-    usable = [(one.host, one.port) for one in locators if one.usable]
-    same = [one for one in usable if one[0] == heard_from]
-    return tuple(same[:1] or usable[:MAX_ADDRESSES])
+# Seconds: a peer that is heard twice, so long apart, from another of its addresses, and not once from the one in use, has
+# moved there.
+MOVED = 1.0
 
 
 class RemoteParticipant:
-    """A participant that announced itself. `heard`: when anything last came from it."""
+    """A participant that announced itself. `heard`: when anything last came from it. `alone`: our multicast does not reach
+    it, so that announcements go to it by itself."""
 
-    def __init__(self, value: "ParticipantData", host: str, now: float) -> None:
+    def __init__(
+        self, value: "ParticipantData", host: str, now: float, networks: "tuple[Network, ...]" = ()
+    ) -> None:
         self.heard = now
-        self.update(value, host)
+        self._elsewhere: tuple[str, float] | None = None
+        self.update(value, host, networks)
 
-    def update(self, value: "ParticipantData", host: str) -> None:
+    def update(self, value: "ParticipantData", host: str, networks: "tuple[Network, ...]" = ()) -> None:
         self.data = value
         self.host = host
         self.lease = value.lease / 1e9 if value.lease < INFINITE else None
-        self.metatraffic = addresses_of(value.metatraffic_unicast or value.metatraffic_multicast, host)
-        self.default = addresses_of(value.default_unicast or value.default_multicast, host)
+        self.metatraffic = addresses_of(
+            value.metatraffic_unicast or value.metatraffic_multicast, host, networks
+        )
+        self.default = addresses_of(value.default_unicast or value.default_multicast, host, networks)
+        self.alone = bool(networks) and not (value.metatraffic_multicast and near(host, networks))
+
+    def moved(self, host: str, now: float) -> bool:
+        """An announcement came from `host`: whether the peer is to be reached there from now on."""
+        if host == self.host:
+            self._elsewhere = None
+        elif self._elsewhere is None or self._elsewhere[0] != host:
+            self._elsewhere = (host, now)
+        elif now - self._elsewhere[1] >= MOVED:
+            self._elsewhere = None
+            return True
+        return False
 
 
 class Spdp:
-    """Announces us, and keeps the table of who is there. `discovered` and `lost` are called before the events go out."""
+    """Announces us, and keeps the table of who is there. `discovered` and `lost` are called before the events go out;
+    `answered` says whether a participant has ever shown that it knows us."""
 
     def __init__(
         self,
@@ -79,17 +93,21 @@ class Spdp:
         period: float,
         discovered: "Callable[[RemoteParticipant, float], None]",
         lost: "Callable[[RemoteParticipant, float], None]",
+        answered: "Callable[[bytes], bool]",
+        networks: "tuple[Network, ...]" = (),
     ) -> None:
         self.remotes: dict[bytes, RemoteParticipant] = {}
         self.own = own
         self._outbox = common.outbox
         self._addresses = addresses
+        self._networks = networks
         self._period = period
         self._limits = common.limits
         self._epoch = common.epoch
         self._deliver = common.deliver
         self._discovered = discovered
         self._lost = lost
+        self._answered = answered
         self._count = common.count
         self._header = common.header
         self._payload = own.emit()
@@ -110,6 +128,27 @@ class Spdp:
         self._payload = own.emit()
         self._sequence += 1
         self._announcing.set(now)
+
+    def move(
+        self,
+        own: "ParticipantData",
+        addresses: "tuple[Address, ...]",
+        networks: "tuple[Network, ...]",
+        now: float,
+    ) -> None:
+        """Our interfaces, or whom we announce to, have changed: everybody is told, as often as at the start, and each peer's
+        addresses are chosen anew."""
+        self._addresses = addresses
+        self._networks = networks
+        self._quick = QUICK
+        if own != self.own:
+            self.change(own, now)
+        else:
+            self._announcing.set(now)
+        for remote in list(self.remotes.values()):
+            remote.update(remote.data, remote.host, networks)
+            self._outbox.send(self._announcement(now, remote.data.guid_prefix), remote.metatraffic)
+            self._discovered(remote, now)
 
     def _announcement(self, now: float, prefix: bytes = b"") -> "tuple[bytes, ...]":
         stamp = info_ts.InfoTimestamp(self._epoch + int(now * 1000000000)).emit()
@@ -164,17 +203,24 @@ class Spdp:
             if len(self.remotes) >= self._limits.participants:
                 self._count("participants-full")
                 return
-            remote = self.remotes[prefix] = RemoteParticipant(found, host, now)
+            remote = self.remotes[prefix] = RemoteParticipant(found, host, now, self._networks)
             # The newcomer hears of us at once, whatever multicast does.
             self._outbox.send(self._announcement(now, prefix), remote.metatraffic)
             self._discovered(remote, now)
             self._deliver(ParticipantDiscovered(found))
         elif remote is not None:
             remote.heard = now
+            moved = remote.moved(host, now)
             if found != remote.data:
-                remote.update(found, host)
+                remote.update(found, host, self._networks)
                 self._discovered(remote, now)
                 self._deliver(ParticipantDiscovered(found))
+            elif moved:
+                remote.update(found, host, self._networks)
+                self._discovered(remote, now)
+            if not self._answered(prefix):
+                # Our greeting was lost, or it lost us; its next chance would be our next announcement.
+                self._outbox.send(self._announcement(now, prefix), remote.metatraffic)
         if remote is not None and remote.lease is not None:
             self._expiring.set(remote.heard + remote.lease)
 
@@ -188,7 +234,9 @@ class Spdp:
     # -- time
 
     def _announce(self, now: float) -> None:
-        self._outbox.send(self._announcement(now), self._addresses)
+        alone = [one.metatraffic for one in self.remotes.values() if one.alone]
+        singly = [one[0] for one in alone if one and one[0] not in self._addresses]
+        self._outbox.send(self._announcement(now), self._addresses + tuple(singly))
         self._quick = max(0, self._quick - 1)
         self._announcing.set(now + (QUICK_PERIOD if self._quick else self._period))
 

@@ -73,6 +73,7 @@ class Writer:
         )
         self.proxies: dict[bytes, ReaderProxy] = {}
         self.last = 0
+        self.accepts: Callable[[EndpointData], bool] | None = None  # which readers are matched, where not all
         self.fragment_size = fragment_size
         self._common = common
         self._outbox = common.outbox

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 MAX_BITS = 256
+MAX_NUMBER = (1 << 63) - 1
+"""The last sequence number."""
 
 _PARSE_LONG = (unpacker(">iII"), unpacker("<iII"))
 _PARSE_SHORT = (unpacker(">II"), unpacker("<II"))

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from roslet.engine.ros1.graph import ServiceOffer
-    from roslet.node import Client, Node
+    from roslet.node import Node
+    from roslet.node.ros1.services import Ros1Client
 
 DEFAULT_BUFF_SIZE = 65536
 # Seconds between two looks for a service, or for a shutdown while a call is under way.
@@ -68,10 +69,10 @@ class Service:
         if _offered.get(self.resolved_name) is not self or session.shutting_down.is_set():
             return
         self._node = node
-        self.uri = node._engine.service_uri
-        offered: Any = self  # has what _offer uses: name, type
-        self._entry = node._offer(offered, self._receive)
-        node._settle()
+        self.uri = node._ros1("rospy").engine.service_uri
+        network = node._ros1("rospy")
+        self._entry = network.offer(self, self._receive)
+        network.settle()
 
     # In the loop's thread: the reply comes later.
 
@@ -93,8 +94,9 @@ class Service:
             return
         with node.reactor.lock:
             link.answer(done, body)
-            node._engine.touch(link)
-            node._update()
+            network = node._ros1("rospy")
+            network.engine.touch(link)
+            network.update()
         node.reactor.wake()
         if not link.persistent:
             worker = self._workers.pop(link, None)
@@ -126,7 +128,7 @@ class Service:
             del _offered[self.resolved_name]
         entry, self._entry = self._entry, None
         if entry is not None and self._node is not None:
-            self._node._withdraw(entry)
+            self._node._ros1("rospy").withdraw(entry)
 
     def spin(self) -> None:
         """Wait until the node is shut down; a Ctrl-C ends the service."""
@@ -175,7 +177,7 @@ class ServiceProxy:
         self.headers = dict(headers or {})
         self.seq = 0
         self.protocol = None
-        self._client: Client | None = None
+        self._client: Ros1Client | None = None
 
     def __call__(self, *args: Any, **kwds: Any) -> Any:
         return self.call(*args, **kwds)
@@ -221,10 +223,11 @@ class ServiceProxy:
         tidy(self.response_class, response)
         return response
 
-    def _connect(self, node: Node) -> Client:
+    def _connect(self, node: Node) -> Ros1Client:
         client = self._client
         if client is None or not self.persistent:
-            client = node.client(self.resolved_name, self.service_class, persistent=self.persistent)
+            network = node._ros1("rospy")
+            client = network.client(self.resolved_name, self.service_class, self.persistent)
             if self.headers:
                 plain = client._header
                 client._header = lambda: {**plain(), **self.headers}  # type: ignore[method-assign]

@@ -1,0 +1,1 @@
+"""ROS 2 in a node: what the classes of the room above are there."""
