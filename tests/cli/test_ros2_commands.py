@@ -149,9 +149,16 @@ LATCHED = roslet.QoS(1, durability="transient_local")
 
 def test_publishers_that_differ_are_all_heard_and_a_note_says_how(run: Run, network: str) -> None:
     with roslet.Node("two", network=network) as node:
-        for quality in ("reliable", "best_effort"):
-            publisher = node.publisher("mixed", "std_msgs/msg/String", qos=roslet.QoS(reliability=quality))
-            node.timer(0.05, lambda publisher=publisher, quality=quality: publisher.publish(data=quality))
+        publishers = [
+            node.publisher("mixed", "std_msgs/msg/String", qos=roslet.QoS(reliability=quality))
+            for quality in ("reliable", "best_effort")
+        ]
+
+        def publish() -> None:
+            for publisher in publishers:
+                publisher.publish(data=publisher.qos.reliability)
+
+        node.timer(0.05, publish)
         node.start()
         outcome = run("topic", "echo", "/mixed", "-n", "6", "--field", "data", "--json", "--timeout", "5")
     assert set(outcome.out.split()) == {'"reliable"', '"best_effort"'}
