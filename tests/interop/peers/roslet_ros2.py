@@ -28,6 +28,7 @@ WORKSPACE = pathlib.Path(__file__).resolve().parent.parent / "ros2_ws"
 endpoints = {}
 inboxes = {}
 facts = {}
+nodes = {}  # of a crowd
 node = None
 
 
@@ -67,14 +68,8 @@ def publisher(key, topic, type_name, qos):
 
 
 def subscription(key, topic, type_name, size, qos, nap=0.0):
-    inbox = inboxes[key] = Inbox(type_name, size)
-
-    def heard(message):
-        inbox(message)
-        if nap:
-            time.sleep(nap)
-
-    watch(key, node.subscribe(topic, type_name, heard, qos=profile(qos)))
+    inbox = inboxes[key] = Inbox(type_name, size, nap)
+    watch(key, node.subscribe(topic, type_name, inbox, qos=profile(qos)))
 
 
 def publish(key, first, count, size, pause):
@@ -180,28 +175,33 @@ def tables():
 
 
 def keyed(key, topic, type_name):
-    """A reader of a keyed topic, which a node does not have: of the participant itself."""
+    """A reader of a keyed topic, which a node does not have: the participant's own. It tells of samples by their payload, and
+    of instances by their state. The key is a string, and the first field; Cyclone sends no key hash."""
+    from roslet.engine.rtps.events import InstanceChanged
     from roslet.wire.rtps import qos as policies
 
-    inbox = inboxes[key] = []
+    heard = inboxes[key] = []
     shell = node._network.shell
 
-    def sink(proxy, value, when):
-        status = 0
-        for pid, data in getattr(value, "inline_qos", None) or ():
-            if pid == 0x71:  # PID_STATUS_INFO
-                status = data[3]
-        inbox.append([bool(value.flags & 4), status, bytes(value.payload).hex()])
+    def name_of(value):
+        body = bytes(value.payload)
+        return body[8 : 8 + body[4] - 1]
+
+    def happened(event):
+        if isinstance(event, InstanceChanged):
+            heard.append(["instance", event.state, event.key.decode()])
 
     with node.reactor.lock:
-        shell.participant.create_reader(
+        reader = shell.participant.create_reader(
             "rt" + topic,
             type_name,
-            policies.Qos(reliability=(policies.RELIABLE, 10**8)),
+            policies.Qos(reliability=(policies.RELIABLE, 10**8), history=(policies.KEEP_ALL, 1)),
             node.reactor.now(),
             keyed=True,
-            sink=sink,
+            key_of=name_of,
+            sink=lambda proxy, value, when: heard.append(["sample", bytes(value.payload).hex()]),
         )
+        shell.handle(reader.entity_id, happened)
         shell.flush()
 
 
@@ -212,14 +212,25 @@ def begin(name, namespace="", network=None):
     node.start()
 
 
+def crowd(first, count):
+    """So many nodes, of which each has an enclave and thus a participant of its own; they all talk to all on /crowd."""
+    for i in range(first, first + count):
+        made = roslet.Node("crowd_%d" % i, arguments=["--ros-args", "--enclave", "/crowd_%d" % i])
+        inbox = Inbox("std_msgs/msg/UInt32", 0)
+        made.subscribe("/crowd", "std_msgs/msg/UInt32", inbox, qos=roslet.QoS(depth=100))
+        nodes[i] = (made, made.publisher("/crowd", "std_msgs/msg/UInt32"), inbox)
+
+
+def crowd_publish():
+    for i, (_, talker, _) in nodes.items():
+        talker.publish(data=i)
+
+
 def mortal(name):
-    """A node that lives until it is killed: hears std_msgs/msg/UInt32 on /to, and says on /from, fifty times a second, its
-    pid and what it heard last, or -1."""
-    last = [-1]
+    """A node that lives until it is killed. Once it hears std_msgs/msg/UInt32 on /to, it says its pid on /from."""
     made = roslet.Node(name)
-    made.subscribe("/to", "std_msgs/msg/UInt32", lambda message: last.__setitem__(0, message.data))
     talker = made.publisher("/from", "std_msgs/msg/String")
-    made.timer(0.02, lambda: talker.publish(data="%d %d" % (os.getpid(), last[0])))
+    made.subscribe("/to", "std_msgs/msg/UInt32", lambda _: talker.publish(data="%d" % os.getpid()))
     made.spin()
 
 
@@ -229,6 +240,7 @@ COMMANDS = {
     "publish": publish,
     "assert_liveliness": lambda key: endpoints[key].assert_liveliness(),
     "heard": lambda key: inboxes[key].told(),
+    "last": lambda key: inboxes[key].numbers[-1:],
     "events": lambda key: facts[key],
     "matched": matched,
     "close": lambda key: endpoints.pop(key).close(),
@@ -248,6 +260,11 @@ COMMANDS = {
     "heard_keyed": lambda key: inboxes[key],
     "process": process,
     "tables": tables,
+    "crowd": crowd,
+    "crowd_matched": lambda: sorted({talker.subscriber_count for _, talker, _ in nodes.values()}),
+    "crowd_publish": crowd_publish,
+    "crowd_heard": lambda: [sorted(inbox.numbers) for _, _, inbox in nodes.values()],
+    "crowd_close": lambda: [made.close() for made, _, _ in nodes.values()] and None,
     "close_node": lambda: node.close(),
     "mortal": lambda name: fork(lambda: mortal(name)),
     "kill": kill,

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 # Every so many samples a heartbeat rides along, so that a fast writer hears of losses without a timer.
 PIGGYBACK = 16
+# How many samples a reliable reader that has never answered is told of beforehand, each in turn.
+GREETINGS = 8
 # Seconds from a sample to the heartbeat that asks for its acknowledgement, doubled up to the longest while nobody answers.
 HEARTBEAT_DELAY = 0.02
 HEARTBEAT_LONGEST = 0.25
@@ -96,6 +98,7 @@ class Writer:
         self._stale = False  # whether the three above are to be found anew
         self._directed = False  # whether any sample was for one reader alone
         self._wanted = False  # whether somebody waits for room
+        self._strangers = False  # whether a reader may not know us yet: see _greet
         self._least = 0  # every reliable reader has the samples up to this one
         self._since_heartbeat = 0
         self._heartbeats = 0
@@ -171,6 +174,8 @@ class Writer:
                 if self._wanted is False and self.history.full(size, change.key):
                     self._wanted = True
                 self.history.add(change)
+        if self._strangers:
+            self._greet(sequence)
         self.last = sequence
         if self._period is not None:
             self._note_deadline(key, flags, now)
@@ -288,9 +293,20 @@ class Writer:
             self._repairs.send_all(proxy, self.history.numbers(), proxy.addresses)
         if proxy.reliable:
             self._repairs.introduce(proxy)
+            self._strangers = not guids.is_builtin(self.data.guid)
             if late and len(self.history) and self._heartbeat_at is None:
                 self._ask_at(now + self._delay)
         return True
+
+    def _greet(self, sequence: int) -> None:
+        """Before sample `sequence`, introduce us again to readers that have said nothing yet: the first introduction may
+        have come before they knew of us, and Cyclone takes what comes before any for history, which a volatile reader of it
+        has no use for."""
+        self._strangers = False
+        for proxy in self.proxies.values():
+            if proxy.reliable and proxy.count < 0 and sequence - proxy.start < GREETINGS:
+                self._strangers = True
+                self._repairs.introduce(proxy)
 
     def unmatch(self, guid: bytes, now: float = 0.0) -> "ReaderProxy | None":
         """Forget a reader."""
@@ -430,6 +446,10 @@ class Writer:
             self._common.count("nack-frag-repeated")
             return
         proxy.frag_count = value.count
+        if value.sequence > self.last:
+            # A GAP over what is yet to be written would lose it.
+            self._common.count("nack-frag-of-unwritten-sample")
+            return
         self._repairs.send_fragments_again(proxy, value, now, reply or proxy.addresses)
 
     def _forget_acknowledged(self) -> None:

@@ -199,8 +199,9 @@ class NodeParameters:
         self._changed(Change([], [], [Parameter(parameter.name)]))
 
     def _changed(self, change: Change) -> None:
-        if self._events is not None and not self._network.node.is_shutdown:
-            self._events.publish(self._event(change))
+        # For nobody, the messages' classes need not be made: that would be much of a node's start.
+        if self._events is not None and self._events.subscriber_count:
+            self._publish(self._events, change)
         for one in change.new + change.changed + change.deleted:
             if one.name == USE_SIM_TIME:
                 self._network.follow_clock(one.value is True)
@@ -215,6 +216,15 @@ class NodeParameters:
         event.changed_parameters = [to_parameter(one) for one in change.changed]
         event.deleted_parameters = [to_parameter(one) for one in change.deleted]
         return event
+
+    def _publish(self, events: Ros2Publisher, change: Change) -> None:
+        stamp = self._network.node.now()
+        event = message_of("ParameterEvent", node=self._network.name)
+        event.stamp.sec, event.stamp.nanosec = stamp.secs, stamp.nsecs
+        event.new_parameters = [to_parameter(one) for one in change.new]
+        event.changed_parameters = [to_parameter(one) for one in change.changed]
+        event.deleted_parameters = [to_parameter(one) for one in change.deleted]
+        events.publish(event)
 
     # -- what others ask; every request is answered, as rclpy answers it
 
