@@ -190,6 +190,9 @@ def _converted(value: Any, base: Any, kind: int, path: str, now: Callable[[], An
         return [_converted(item, base, 0, f"{path}[{at}]", now) for at, item in enumerate(value)]
     if not isinstance(base, str):
         made: Message = base() if old is None else old
+        if value == "now" and base._type == "builtin_interfaces/msg/Time":
+            stamp = now()
+            value = {"sec": stamp.secs, "nanosec": stamp.nsecs}
         if value == "auto" and base._type in ("std_msgs/Header", "std_msgs/msg/Header"):
             value = {"stamp": "now"}
         fill(made, value, now, path)
