@@ -33,6 +33,13 @@ HERE = pathlib.Path(__file__).resolve()
 GENPY_PYTHON = "/usr/bin/python3"
 CACHE = pathlib.Path(os.environ.get("ROSLET_PEERS") or pathlib.Path.home() / ".cache/roslet/peers")
 
+# The paper's Coordinate is in no standard package: its definition for each system, for the libraries that take one.
+COORDINATE = "mros_comm_measure/Coordinate"
+COORDINATE_TEXT = {
+    "ros1": "float32 x\nfloat32 y\nfloat32 z\ntime time\n",
+    "ros2": "float32 x\nfloat32 y\nfloat32 z\nbuiltin_interfaces/Time time\n",
+}
+
 STAMP = {"sec": 1700000000, "nanosec": 123456789}
 HEADER = {"stamp": STAMP, "frame_id": "base_link"}
 VECTOR = {"x": 0.1, "y": -0.2, "z": 9.81}
@@ -61,6 +68,7 @@ def cases() -> dict[str, tuple[str, dict[str, Any]]]:
     ]
     return {
         "String(11)": ("std_msgs/String", {"data": "hello world"}),
+        "Coordinate": (COORDINATE, {"x": 0.5, "y": -0.25, "z": 1000.125, "time": STAMP}),
         "PointStamped": ("geometry_msgs/PointStamped", {"header": HEADER, "point": VECTOR}),
         "Imu": (
             "sensor_msgs/Imu",
@@ -154,7 +162,9 @@ def roslet_cases(dialect: Any) -> Iterator[Case]:
     sys.path.insert(0, str(HERE.parents[1] / "src"))
     import numpy
 
-    from roslet.gen.runtime import message_class
+    from roslet.gen.runtime import message_class, registry
+
+    registry(dialect).load_full_text(COORDINATE, COORDINATE_TEXT[dialect])
 
     def build(kind: Any, values: dict[str, Any]) -> Any:
         message = kind()
@@ -190,6 +200,7 @@ def roslet_cases(dialect: Any) -> Iterator[Case]:
 
 
 def genpy_cases() -> Iterator[Case]:
+    sys.path.insert(0, str(CACHE / "ros1/python"))  # the modules that genpy's generator made of our messages
     import genpy.message  # type: ignore[import-not-found]
 
     def read_new(kind: Any, data: bytes) -> object:
@@ -263,9 +274,10 @@ def rclpy_cases() -> Iterator[Case]:
 
 def rosbags_cases(dialect: str) -> Iterator[Case]:
     import numpy
-    from rosbags.typesys import Stores, get_typestore
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS1_NOETIC if dialect == "ros1" else Stores.ROS2_JAZZY)
+    store.register(get_types_from_msg(COORDINATE_TEXT[dialect], COORDINATE.replace("/", "/msg/")))
 
     def build(type_name: str, values: dict[str, Any]) -> Any:
         made = {}

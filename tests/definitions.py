@@ -16,7 +16,7 @@ from roslet.idl import Registry
 @contextmanager
 def classes(dialect: Any, texts: dict[str, str]) -> Iterator[list[Any]]:
     """The classes of the definitions `texts` (`pkg/Name` or `pkg/srv/Name` to text), in a registry of their own."""
-    registries, made = runtime._registries, runtime._classes
+    before = runtime._scopes
     with tempfile.TemporaryDirectory() as folder:
         for name, text in texts.items():
             package, _, rest = name.partition("/")
@@ -27,9 +27,9 @@ def classes(dialect: Any, texts: dict[str, str]) -> Iterator[list[Any]]:
             path.write_text(text, encoding="utf-8")
         registry = Registry(dialect, None)
         registry.load(os.fspath(folder))
-        runtime._registries, runtime._classes = {dialect: registry}, {}
+        runtime._scopes = {dialect: runtime._Scope(registry)}
         try:
             found = [runtime.interface_class(dialect, name) for name in texts]
             yield found
         finally:
-            runtime._registries, runtime._classes = registries, made
+            runtime._scopes = before

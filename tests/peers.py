@@ -20,7 +20,9 @@ WORKSPACE = (
 
 _LOCATIONS = {
     "kilted": CACHE / "kilted/bin/python",
+    "kilted-test-msgs": CACHE / "kilted/share/test_msgs",
     "jazzy": CACHE / "jazzy/bin/python",
+    "jazzy-test-msgs": CACHE / "jazzy/share/test_msgs",
     "cyclone": CACHE / "cyclone/bin/python",
     "roscpp": CACHE / "ros1/bin/roscpp_peer",
     "ros1-definitions": CACHE / "ros1-definitions/usr/share",

@@ -7,11 +7,9 @@ root=$PWD
 python=$root/.venv/bin/python
 if ! "$python" -c 'import atheris' 2>/dev/null; then
     if command -v uv >/dev/null 2>&1; then
-        uv pip install -qq --python "$python" --group fuzz
+        uv pip install -qq --python "$python" --editable '.[fuzz]'
     else
-        # Dependency groups are read by pip since 25.1, and Debian 12 has 23.0.
-        "$python" -m pip install -qq 'pip>=25.1'
-        "$python" -m pip install -qq --group fuzz
+        "$python" -m pip install -qq --editable '.[fuzz]'
     fi
 fi
 mkdir -p build/fuzz

@@ -22,8 +22,6 @@ if command -v uv >/dev/null 2>&1; then
     uv pip install -qq --python .venv/bin/python --editable '.[dev]'
 else
     [ -x .venv/bin/python ] || "$python" -m venv .venv
-    # pip reads dependency groups, which tools/fuzz.sh asks for, since 25.1; Debian 12 has 23.0.
-    .venv/bin/python -m pip install -qq 'pip>=25.1'
     .venv/bin/python -m pip install -qq --editable '.[dev]'
 fi
 echo "$want" >"$stamp"

@@ -17,6 +17,11 @@
     +-- Unsupported            what this network lacks; says which network and why
     +-- NodeClosed             the node, or the object, has been closed
     +-- ParameterNotSet        no such parameter
+    |   +-- ParameterNotDeclared     nobody declared it (ROS 2)
+    |   +-- ParameterUninitialized   it was declared without a value (ROS 2)
+    +-- ParameterAlreadyDeclared     a parameter is declared once (ROS 2)
+    +-- ParameterReadOnly      it is neither undeclared nor described anew (ROS 2)
+    +-- ParameterRefused       a value that does not suit its parameter; says why (ROS 2)
 
 Runs on MicroPython. Local misuse raises at once; what a peer does wrong raises only where a caller waits for it,
 otherwise it is counted under its named reason.
@@ -123,3 +128,29 @@ class NodeClosed(RosletError):
 
 class ParameterNotSet(RosletError):
     """No such parameter."""
+
+
+class ParameterNotDeclared(ParameterNotSet):
+    """Nobody declared a parameter of this name."""
+
+
+class ParameterUninitialized(ParameterNotSet):
+    """The parameter was declared with a type, and has no value yet."""
+
+
+class ParameterAlreadyDeclared(RosletError):
+    """A parameter of this name exists."""
+
+
+class ParameterReadOnly(RosletError):
+    """A read-only parameter is not undeclared, nor described anew."""
+
+
+class ParameterRefused(RosletError):
+    """The value does not suit the parameter; `reason` says why, `wrong_type` whether that is its type."""
+
+    def __init__(self, name: str, reason: str, wrong_type: bool = False) -> None:
+        super().__init__("%s: %s" % (name, reason))
+        self.name = name
+        self.reason = reason
+        self.wrong_type = wrong_type

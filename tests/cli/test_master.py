@@ -1,4 +1,4 @@
-"""`roslet master`: where it listens."""
+"""`roslet master`: where it listens, and the rosout node that it can be."""
 
 from __future__ import annotations
 
@@ -7,8 +7,12 @@ import signal
 import socket
 import subprocess
 import sys
+import time
+from collections.abc import Callable
 
 import pytest
+
+import roslet
 
 
 def free_port() -> int:
@@ -51,3 +55,27 @@ def test_a_master_uri_without_a_port_is_refused() -> None:
     )
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr == "roslet: 'nonsense' is no URI\n"
+
+
+def test_with_rosout_all_logs_are_gathered_and_nothing_is_left_at_the_end(
+    start: Callable[..., subprocess.Popen[str]],
+) -> None:
+    process = start("master", "--host", "127.0.0.1", "--port", "0", "--rosout")
+    assert process.stdout is not None
+    network = "ros1" + process.stdout.readline().strip().removeprefix("ROS_MASTER_URI=http")
+    heard: list[tuple[str, str]] = []
+    with roslet.Node("viewer", network=network) as viewer, roslet.Node("robot", network=network) as robot:
+        robot.log.quiet = True
+        viewer.subscribe(
+            "/rosout_agg", "rosgraph_msgs/Log", lambda log: heard.append((log.name, log.msg)), qos=100
+        )
+        assert set(viewer.nodes()) == {"/rosout", "/viewer", "/robot"}
+        end = time.monotonic() + 10
+        while ("/robot", "hot") not in heard and time.monotonic() < end:
+            robot.log.error("hot")  # again: the connections are made meanwhile
+            viewer.spin(0.1)
+        assert ("/robot", "hot") in heard
+    begin = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    assert (process.wait(5), process.stderr.read() if process.stderr else "") == (0, "")
+    assert time.monotonic() - begin < 2

@@ -44,6 +44,28 @@ def test_what_looks_like_a_structure_and_is_none_is_refused(yaml_or_not: bool) -
         read_value("[1, 2")
 
 
+@pytest.mark.parametrize("text", ["!!int x", "!!bool x", "!!timestamp x", "2020-13-45", "[" * 3000])
+def test_what_pyyaml_stumbles_over_is_refused_too(text: str) -> None:
+    """Found by fuzz_values: these come out of PyYAML as ValueError, KeyError, AttributeError and RecursionError."""
+    with pytest.raises(CommandError, match="not YAML"):
+        read_value(text)
+    with pytest.raises(CommandError, match=r"^file\.yaml: "):
+        read_document(text, "file.yaml")
+
+
+def test_deep_nesting_is_refused(yaml_or_not: bool) -> None:
+    text = "[" * 100000
+    with pytest.raises(CommandError, match="nested too deeply"):
+        read_value(text)
+    with pytest.raises(CommandError, match="nested too deeply"):
+        read_document(text, "file")
+
+
+def test_a_number_too_large_for_a_float_is_refused_with_its_place(yaml_or_not: bool) -> None:
+    with pytest.raises(InvalidMessage, match=r"x: too large for a float"):
+        made("geometry_msgs/Point", "x:=1" + "0" * 400)
+
+
 def test_without_pyyaml_the_way_to_get_yaml_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "yaml", None)
     with pytest.raises(CommandError, match=r"pip install 'roslet\[cli\]'"):

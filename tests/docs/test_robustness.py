@@ -12,14 +12,18 @@ from docs.pages import ROOT, code, table_rows
 
 PAGE = "docs/robustness.md"
 SOURCE = ROOT / "src" / "roslet"
-ROOMS = ("names.py", "wire", "engine", "io", "node", "master")
+ROOMS = ("names", "wire", "engine", "io", "node", "master")
 # The ROS 2 wire is not in use yet.
-LATER = ("wire/rtps", "engine/rtps", "engine/ros2", "io/udp.py", "io/rtps")
+LATER = ("wire/rtps", "engine/rtps", "io/udp.py", "io/rtps")
 
 UNITS = {"KiB": 1 << 10, "MiB": 1 << 20, "s": 1, "": 1}
 
 # Text with hyphens that is no reason.
 OTHER = {
+    # what --enable- and --disable- stand before
+    "external-lib-logs",
+    "rosout-logs",
+    "stdout-logs",
     "content-encoding",
     "content-length",
     "keep-alive",

@@ -51,8 +51,7 @@ def genpy() -> Iterator[Oracle]:
 @pytest.fixture(autouse=True)
 def debian_definitions(monkeypatch: pytest.MonkeyPatch) -> None:
     registry = Registry("ros1", {"ROS_PACKAGE_PATH": f"{SHARE}:{UNPACKED}"})
-    monkeypatch.setattr(runtime, "_registries", {"ros1": registry})
-    monkeypatch.setattr(runtime, "_classes", {})
+    monkeypatch.setattr(runtime, "_scopes", {"ros1": runtime._Scope(registry)})
 
 
 @pytest.mark.parametrize("package", _packages())

@@ -109,8 +109,7 @@ def test_every_type_of_the_wheels_has_the_bytes_and_values_of_rclpy(
     python = require(distribution)
     share = python.parent.parent / "share"
     registry = Registry("ros2", {"AMENT_PREFIX_PATH": str(share.parent)})
-    monkeypatch.setattr(runtime, "_registries", {"ros2": registry})
-    monkeypatch.setattr(runtime, "_classes", {})
+    monkeypatch.setattr(runtime, "_scopes", {"ros2": runtime._Scope(registry)})
     if distribution not in oracles:
         oracles[distribution] = Oracle(python, "rclpy_messages.py")
     compared = 0

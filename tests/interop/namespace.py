@@ -9,8 +9,10 @@ import os
 import pathlib
 import signal
 import subprocess
+import sys
 import time
 from types import TracebackType
+from typing import IO, Any
 
 import pytest
 
@@ -19,6 +21,8 @@ _ROUTE = "ip link set lo multicast on && ip route add 239.0.0.0/8 dev lo"
 
 class Program:
     """A command in the namespace; its standard output goes to a file, so that it never blocks."""
+
+    end = signal.SIGTERM
 
     def __init__(
         self, command: list[str], environment: dict[str, str], folder: pathlib.Path, name: str
@@ -52,13 +56,24 @@ class Program:
         return self.lines()
 
 
+class Piped:
+    """A command in the namespace that its owner talks to; it is not waited for in the end."""
+
+    end = signal.SIGKILL
+
+    def __init__(
+        self, command: list[str], stdin: int, stdout: int, stderr: IO[bytes], environment: dict[str, str]
+    ) -> None:
+        self.process = subprocess.Popen(command, stdin=stdin, stdout=stdout, stderr=stderr, env=environment)
+
+
 class Namespace:
     """A context manager: `start` runs programs in it, all of which end with it. `route`: whether multicast has one."""
 
     def __init__(self, folder: pathlib.Path, route: bool = True) -> None:
         self.folder = folder
         self._setup = f"ip link set lo up && {_ROUTE if route else 'true'} && echo up && exec sleep 600"
-        self.programs: list[Program] = []
+        self.programs: list[Program | Piped] = []
 
     def __enter__(self) -> Namespace:
         unshare = (
@@ -92,21 +107,36 @@ class Namespace:
         assert done.returncode == 0, f"{command}: {done.stderr}"
         return done.stdout
 
-    def start(self, *command: str, name: str = "", **environment: str) -> Program:
+    def wait_for_link(self, name: str) -> None:
+        """Until an interface has a carrier: the kernel takes a moment, and Fast DDS looks only once."""
+        end = time.monotonic() + 10.0
+        while "state UP" not in self.run(f"ip -o link show dev {name}"):
+            assert time.monotonic() < end, f"{name} did not come up"
+            time.sleep(0.02)
+
+    def environment(self, **changes: str) -> dict[str, str]:
+        """What a program in it starts with: nothing of ROS but domain 0, and UDP only."""
         values = {key: value for key, value in os.environ.items() if not key.startswith("ROS_")}
-        values.update(FASTDDS_BUILTIN_TRANSPORTS="UDPv4", ROS_DOMAIN_ID="0")
-        values.update(environment)
+        return {**values, "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4", "ROS_DOMAIN_ID": "0", **changes}
+
+    def start(self, *command: str, name: str = "", **environment: str) -> Program:
         name = name or f"program{len(self.programs)}"
-        program = Program([*self._enter(), *command], values, self.folder, name)
+        program = Program([*self._enter(), *command], self.environment(**environment), self.folder, name)
         self.programs.append(program)
         return program
+
+    def popen(self, command: list[str], stdin: int, stdout: int, stderr: IO[bytes], **environment: str) -> Any:
+        """A program whose input and output are the caller's."""
+        program = Piped([*self._enter(), *command], stdin, stdout, stderr, self.environment(**environment))
+        self.programs.append(program)
+        return program.process
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         for program in self.programs:
             if program.process.poll() is None:
-                program.process.send_signal(signal.SIGTERM)
+                program.process.send_signal(program.end)
         for program in self.programs:
             try:
                 program.process.wait(5)
@@ -117,13 +147,20 @@ class Namespace:
         self._holder.communicate(timeout=5)
 
 
-def connect(one: Namespace, other: Namespace, cable: str, subnet: str) -> None:
-    """A cable of that name between two namespaces: addresses .1 and .2 of a subnet such as "10.0.1"."""
+def lay(one: Namespace, other: Namespace, cable: str) -> None:
+    """A cable of that name between two namespaces, without addresses and not up."""
     if os.geteuid() != 0:
         pytest.skip("only root can lay a cable between two network namespaces")
     one.run(f"ip link add name {cable} type veth peer name {cable} netns {other.pid}")
+
+
+def connect(one: Namespace, other: Namespace, cable: str, subnet: str) -> None:
+    """A cable of that name between two namespaces: addresses .1 and .2 of a subnet such as "10.0.1"."""
+    lay(one, other, cable)
     for end, number in ((one, 1), (other, 2)):
-        end.run(f"ip address add {subnet}.{number}/24 dev {cable} && ip link set {cable} up")
+        end.run(f"ip address add {subnet}.{number}/24 dev {cable} && ip link set dev {cable} up")
+    for end in (one, other):
+        end.wait_for_link(cable)
 
 
 def route(left: Namespace, router: Namespace, right: Namespace) -> None:
@@ -133,3 +170,21 @@ def route(left: Namespace, router: Namespace, right: Namespace) -> None:
     router.run("sysctl -qw net.ipv4.ip_forward=1")
     left.run("ip route add default via 10.0.1.2")
     right.run("ip route add default via 10.0.2.2")
+
+
+def connect_lossy(one: Namespace, middle: Namespace, other: Namespace, percent: float) -> Program:
+    """Two hosts, 10.0.1.1 and 10.0.1.2, and between them a bridge that loses frames by a seeded die."""
+    for host, cable, number in ((one, "left", 1), (other, "right", 2)):
+        lay(host, middle, cable)
+        host.run(f"ip address add 10.0.1.{number}/24 dev {cable} && ip link set dev {cable} up")
+        middle.run(f"ip link set dev {cable} up")
+        host.wait_for_link(cable)
+    bridge = middle.start(
+        sys.executable,
+        str(pathlib.Path(__file__).parent / "peers/lossy_bridge.py"),
+        "left",
+        "right",
+        str(percent),
+    )
+    bridge.wait_for("ready")
+    return bridge

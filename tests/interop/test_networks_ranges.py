@@ -59,8 +59,8 @@ def test_a_static_peer_of_either_side_is_found_beyond_localhost(
     with Namespace(tmp_path, route=False) as here, Namespace(tmp_path, route=False) as there:
         connect(here, there, "cable", "10.0.1")
         talk(here, "roslet", ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST", ROS_STATIC_PEERS=ours)
-        settings = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_STATIC_PEERS": theirs}
-        check_heard(listen(there, peer, **settings))
+        heard = listen(there, peer, ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST", ROS_STATIC_PEERS=theirs)
+        check_heard(heard)
 
 
 def test_localhost_only_puts_static_peers_out_of_force(tmp_path: pathlib.Path) -> None:

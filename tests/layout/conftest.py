@@ -8,12 +8,9 @@ import pytest
 
 from roslet.gen import runtime
 
-_REGISTRIES: dict[str, Any] = {}
-_CLASSES: dict[tuple[str, str], Any] = {}
+_SCOPES: dict[str, Any] = {}
 
 
 @pytest.fixture(autouse=True)
 def separate_registries(monkeypatch: pytest.MonkeyPatch) -> None:
-
-    monkeypatch.setattr(runtime, "_registries", _REGISTRIES)
-    monkeypatch.setattr(runtime, "_classes", _CLASSES)
+    monkeypatch.setattr(runtime, "_scopes", _SCOPES)

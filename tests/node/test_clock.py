@@ -127,6 +127,17 @@ def test_with_use_sim_time_a_node_follows_the_clock_from_its_beginning(
     wait_until(lambda: node.now().to_sec() == 12.5, "the time is told")
 
 
+def test_the_node_that_publishes_the_clock_follows_it_too(make: Nodes, simulated: SimulatedTime) -> None:
+    calls: list[float] = []
+    simulated.source.timer(1.0, lambda: calls.append(simulated.source.now().to_sec()))
+    assert simulated.publisher.wait_for_subscribers(1, 3)
+    for seconds in (100.0, 100.5, 101.0):
+        simulated.set(seconds)
+        wait_until(lambda seconds=seconds: simulated.source.now().to_sec() == seconds, "it is told")  # type: ignore[misc]
+        serve(0.03)
+    assert calls == [101.0]
+
+
 def test_simulated_timers_and_sleeps_go_by_the_clock(make: Nodes, simulated: SimulatedTime) -> None:
     node = make("a")
     calls: list[float] = []

@@ -224,6 +224,16 @@ def test_a_document_cut_anywhere_is_refused(document: bytes) -> None:
             assert raised.value.reason == "truncated"
 
 
+def test_no_parameter_is_set_to_an_integer_that_rosmaster_could_not_give_back() -> None:
+    for value in (2**31, -(2**31) - 1, [2**40], {"a": {"b": [1, 2**31]}}):
+        with pytest.raises(InvalidMessage, match="more than 32 bits") as raised:
+            xmlrpc.emit_call("setParam", ["/n", "/p", value])
+        assert raised.value.path == "params[2]"
+        assert b"<i8>" in xmlrpc.emit_call("other", ["/n", "/p", value])
+    for allowed in (2**31 - 1, -(2**31), 1e300, "<value><i8>2147483648</i8></value>"):
+        assert xmlrpc.parse_call(xmlrpc.emit_call("setParam", ["/n", "/p", allowed]))[1][2] == allowed
+
+
 def test_an_error_tells_the_byte_where_it_was_found() -> None:
     with pytest.raises(ProtocolError) as raised:
         xmlrpc.parse_call(call(b"<value><int>x</int></value>"))

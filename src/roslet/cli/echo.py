@@ -8,47 +8,14 @@ from typing import TYPE_CHECKING, Any
 from roslet.cli.options import CommandError, full_name, load_types
 from roslet.cli.output import Live, json_text
 from roslet.cli.render import Style, plain, select, steps, yaml_lines
-from roslet.cli.session import open_node
-from roslet.errors import DefinitionError, MalformedMessage, RosletError
+from roslet.cli.session import open_session
+from roslet.errors import MalformedMessage
 
 if TYPE_CHECKING:
     import argparse
 
-    from roslet.node.topics import RawMessage
-    from roslet.wire.message import Message
-
-
-class Reader:
-    """Raw messages to message objects, by the definition that is installed or else by the publisher's own."""
-
-    def __init__(self) -> None:
-        self._classes: dict[tuple[str, str], type[Message]] = {}
-
-    def read(self, raw: RawMessage) -> Message:
-        """Raises CommandError where there is no definition, MalformedMessage."""
-        key = (raw.type, raw.md5sum)
-        kind = self._classes.get(key)
-        if kind is None:
-            kind = self._classes[key] = self._find(raw)
-        return kind.deserialize(raw.data)
-
-    def _find(self, raw: RawMessage) -> type[Message]:
-        from roslet.gen.runtime import message_class, message_class_of
-
-        problem = ""
-        try:
-            kind = message_class("ros1", raw.type)
-            if raw.md5sum in ("*", kind._md5sum):
-                return kind
-            problem = f"the definition installed here has md5sum {kind._md5sum}, the publisher's {raw.md5sum}"
-        except DefinitionError as error:
-            problem = str(error)
-        if raw.definition.strip() or not problem:
-            try:
-                return message_class_of(raw.type, raw.definition)
-            except RosletError as error:
-                problem = f"the definition that its publisher sent is wrong: {error}"
-        raise CommandError(f"cannot show {raw.type}: {problem}")
+# Messages that may wait while one is printed.
+DEPTH = 10
 
 
 def echo(arguments: argparse.Namespace) -> int:
@@ -58,7 +25,6 @@ def echo(arguments: argparse.Namespace) -> int:
     if arguments.field:
         steps(arguments.field)  # a wrong path is reported before the first message
     style = Style(arguments.noarr, arguments.nostr, arguments.truncate)
-    reader = Reader()
     live = Live() if arguments.clear else None
     shown = 0
     left = arguments.count
@@ -94,12 +60,14 @@ def echo(arguments: argparse.Namespace) -> int:
             or (arguments.timeout is not None and now - latest >= arguments.timeout)
         )
 
-    with open_node(arguments, "echo") as node:
-        subscription = node.subscribe(topic, "*", show)
+    with open_session(arguments, "echo") as session:
+        node, reader = session.node, session.reader()
+        latest = begin = time.monotonic()
+        tap = session.listen(topic, show, DEPTH, arguments.qos)
         # The loop looks at the clock at least this often, so that a limit ends a silent topic too.
         while not over() and not node.is_shutdown:
             node.spin_until(over, _soonest(arguments, begin, latest))
-        publishers = subscription.publisher_count
+        publishers = tap.publisher_count
     if not done and arguments.timeout is not None and time.monotonic() - latest >= arguments.timeout:
         who = f"{publishers} publishers" if publishers != 1 else "1 publisher"
         raise CommandError(f"{topic}: no message within {arguments.timeout:g} s ({who})")

@@ -1,118 +1,144 @@
-"""Questions to the master and to nodes, asked without being a node: nothing is registered, nothing listens."""
+"""What commands ask about a network, whichever it is. `open_graph` gives one that answers."""
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING, Any
-
-from roslet.cli.options import UNREACHABLE, CommandError
-from roslet.errors import CallTimeout, Fault, Unreachable
-from roslet.io.blocking import Caller, exchange_headers
-from roslet.names import parse_network
 
 if TYPE_CHECKING:
     from types import TracebackType
 
-# Who asks, in the master's log.
-CALLER = "/roslet"
-# Seconds that the master has for one answer.
-MASTER_TIMEOUT = 10.0
-# Seconds that a node has: many are asked in a row, and some may be gone.
-NODE_TIMEOUT = 3.0
+    from typing_extensions import Self
+
+    from roslet.cli.parameters import ParameterStore
 
 
 class Graph:
-    """The ROS graph of the network that a command was given."""
+    """The contract, and a context manager. What is asked first is asked anew by a new object only.
 
-    def __init__(self, network: str) -> None:
-        self.network, self.master_uri = parse_network(network, os.environ.get("ROS_MASTER_URI"))
-        self._master = Caller(self.master_uri, MASTER_TIMEOUT)
-        self._state: list[dict[str, list[str]]] | None = None
-        self._types: dict[str, str] | None = None
+    publishers, subscribers   topic to the names of the nodes of its endpoints; a node with two has its name there twice
+    services                  service to the names of the nodes that offer it
+    types                     topic to its type; "*" where nobody has said, several with commas where they disagree
 
-    def __enter__(self) -> Graph:
+    The methods that raise raise CommandError, for a person to read.
+    """
+
+    dialect: Any = ""
+    network = ""
+
+    @property
+    def publishers(self) -> dict[str, list[str]]:
+        raise NotImplementedError
+
+    @property
+    def subscribers(self) -> dict[str, list[str]]:
+        raise NotImplementedError
+
+    @property
+    def services(self) -> dict[str, list[str]]:
+        raise NotImplementedError
+
+    @property
+    def types(self) -> dict[str, str]:
+        raise NotImplementedError
+
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._master.close()
+        self.close()
 
-    def master(self, method: str, *arguments: Any) -> Any:
-        """The value that the master answers. Raises Fault; CommandError where there is no master."""
-        try:
-            return self._master.call(method, CALLER, *arguments)
-        except (Unreachable, CallTimeout) as error:
-            reason = str(error).rpartition(self.master_uri.partition("://")[2] + ": ")[2]
-            raise CommandError(
-                f"cannot reach the master at {self.master_uri} ({reason})", UNREACHABLE
-            ) from None
-
-    def node(self, uri: str, method: str, *arguments: Any) -> Any:
-        """The value that the node whose slave API is at `uri` answers. Raises Fault, Unreachable, CallTimeout."""
-        with Caller(uri, NODE_TIMEOUT) as caller:
-            return caller.call(method, CALLER, *arguments)
-
-    @property
-    def publishers(self) -> dict[str, list[str]]:
-        """Topic to the nodes that publish it."""
-        return self._system()[0]
-
-    @property
-    def subscribers(self) -> dict[str, list[str]]:
-        """Topic to the nodes that subscribe it."""
-        return self._system()[1]
-
-    @property
-    def services(self) -> dict[str, list[str]]:
-        """Service to the nodes that offer it."""
-        return self._system()[2]
-
-    def _system(self) -> list[dict[str, list[str]]]:
-        if self._state is None:
-            answer = self.master("getSystemState")
-            self._state = [{str(name): sorted(map(str, who)) for name, who in part} for part in answer]
-        return self._state
-
-    @property
-    def types(self) -> dict[str, str]:
-        """Topic to its type; "*" where nobody has said."""
-        if self._types is None:
-            self._types = {str(topic): str(kind) for topic, kind in self.master("getTopicTypes")}
-        return self._types
+    def close(self) -> None:
+        """Ask nothing more."""
+        raise NotImplementedError
 
     def topics(self) -> list[str]:
         """Every topic that is published or subscribed, sorted."""
         return sorted({*self.publishers, *self.subscribers})
 
     def nodes(self) -> list[str]:
-        """Every node that has something registered, sorted."""
-        return sorted({node for part in self._system() for nodes in part.values() for node in nodes})
+        """Every node, sorted."""
+        raise NotImplementedError
 
-    def lookup_node(self, name: str) -> str | None:
-        """The URI of a node's slave API; None where the master knows no such node."""
-        try:
-            return str(self.master("lookupNode", name))
-        except Fault:
-            return None
+    def hidden(self, name: str) -> bool:
+        """Whether a list leaves out the name where nobody asks for all."""
+        return False
 
-    def lookup_service(self, name: str) -> str | None:
-        """The rosrpc:// URI of a service; None where there is none."""
-        try:
-            return str(self.master("lookupService", name))
-        except Fault:
-            return None
+    def endpoints_info(self, topic: str) -> dict[str, list[dict[str, Any]]]:
+        """`publishers` and `subscribers` of a topic, each with what this network knows of it, as JSON data."""
+        raise NotImplementedError
 
-    def probe_service(self, name: str) -> dict[str, str]:
-        """The connection header of the service's server: type, md5sum, callerid, ...
+    def endpoint_rows(self, endpoints: list[dict[str, Any]], verbose: bool) -> list[tuple[str, ...]]:
+        """The same for a person: a row, or several, for each."""
+        raise NotImplementedError
 
-        Raises CommandError where there is no such service, or where its server does not answer.
-        """
-        uri = self.lookup_service(name)
-        if uri is None:
-            raise CommandError(f"there is no service {name}")
-        fields = {"probe": "1", "md5sum": "*", "callerid": CALLER, "service": name}
-        try:
-            return {**exchange_headers(uri, fields, NODE_TIMEOUT), "uri": uri}
-        except (Unreachable, CallTimeout) as error:
-            raise CommandError(f"cannot reach the server of {name}: {error}", UNREACHABLE) from None
+    def service_type(self, name: str) -> str:
+        """The type of a service; "*" where its server does not say it. Raises where there is no such service."""
+        raise NotImplementedError
+
+    def service_info(self, name: str) -> dict[str, Any]:
+        """What this network knows of a service, as JSON data: `type`, `nodes` and more, and a title for each in
+        `service_titles`. Raises where there is no such service."""
+        raise NotImplementedError
+
+    service_titles: tuple[tuple[str, str], ...] = ()
+
+    def has_service(self, name: str) -> bool:
+        """Whether the service is there now."""
+        raise NotImplementedError
+
+    def node_info(self, name: str) -> tuple[dict[str, Any], str]:
+        """What is known of a node, as JSON data, and what could not be learnt ("" where all could). Raises where there is no
+        such node."""
+        raise NotImplementedError
+
+    def print_node(self, described: dict[str, Any]) -> None:
+        """Print what `node_info` found."""
+        raise NotImplementedError
+
+    def parameters(self) -> ParameterStore:
+        """Where parameters are."""
+        raise NotImplementedError
+
+
+def open_graph(network: str) -> Graph:
+    """The graph of the network that a command was given; on ROS 2, after discovery had its time.
+
+    Raises CommandError where a master is needed and does not answer, as soon as it is asked.
+    """
+    if is_ros1(network):
+        from roslet.cli.ros1.graph import Ros1Graph
+
+        return Ros1Graph(network)
+    from roslet.cli.ros2.graph import Ros2Graph
+
+    return Ros2Graph(network)
+
+
+def is_ros1(network: str) -> bool:
+    """Whether a network's URL is one of ROS 1. Raises InvalidName where it is none of either."""
+    from roslet.errors import InvalidName
+
+    scheme, found, _ = network.partition("://")
+    if not found or scheme not in ("ros1", "ros2"):
+        raise InvalidName(f"{network!r} is no network; write ros2://DOMAIN or ros1://host:port")
+    return scheme == "ros1"
+
+
+def open_ros1(network: str, what: str) -> Any:
+    """The graph of a network that must be one of ROS 1: on ROS 2 there is no `what`. Raises Unsupported."""
+    from roslet.errors import Unsupported
+
+    if not is_ros1(network):
+        raise Unsupported(f"{what}: the ROS 2 network has no such call")
+    return open_graph(network)
+
+
+def open_ros2(network: str, what: str) -> Any:
+    """The contrary."""
+    from roslet.errors import Unsupported
+
+    if is_ros1(network):
+        raise Unsupported(f"{what}: the ROS 1 network has no such thing")
+    return open_graph(network)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import time
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from roslet.cli.graph import Graph
-from roslet.cli.options import UNREACHABLE, CommandError, Group, count, full_name, positive
-from roslet.cli.output import emit_json, json_text, note, seconds_text, section, table
+from roslet.cli.graph import open_graph, open_ros1
+from roslet.cli.options import ALL, UNREACHABLE, CommandError, Group, count, full_name, positive
+from roslet.cli.output import emit_json, json_text, note, seconds_text, table
 from roslet.errors import CallTimeout, ProtocolError, RemoteError, Unreachable
 
 if TYPE_CHECKING:
     import argparse
+
+    from roslet.cli.ros1.graph import Ros1Graph
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -24,6 +26,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     list_.add_argument("namespace", nargs="?", default="/", metavar="NAMESPACE", help="those below it only")
     list_.add_argument("-q", "--names", action="store_true", help="names only, one a line")
+    list_.add_argument("-a", "--all", action="store_true", help=ALL)
 
     info = group.command(
         "info",
@@ -37,7 +40,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     ping = group.command(
         "ping",
         run_ping,
-        "measure how fast nodes answer",
+        "measure how fast nodes answer (ROS 1)",
         "roslet node ping /talker -n 4\nroslet node ping --all -n 1",
         "network json",
     )
@@ -51,7 +54,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     kill = group.command(
         "kill",
         run_kill,
-        "ask nodes to end",
+        "ask nodes to end (ROS 1)",
         "roslet node kill /talker\nroslet node kill --all",
         "network json",
     )
@@ -62,10 +65,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run_list(arguments: argparse.Namespace) -> int:
     """`roslet node list`."""
     namespace = full_name(arguments.namespace).rstrip("/") + "/"
-    with Graph(arguments.network) as graph:
+    with open_graph(arguments.network) as graph:
         rows = []
         for node in graph.nodes():
-            if node.startswith(namespace):
+            if node.startswith(namespace) and (arguments.all or not graph.hidden(node)):
                 parts = (graph.publishers, graph.subscribers, graph.services)
                 rows.append((node, *(sum(node in nodes for nodes in part.values()) for part in parts)))
     if arguments.json:
@@ -82,92 +85,18 @@ def run_list(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _uri(graph: Graph, name: str) -> str:
-    uri = graph.lookup_node(name)
-    if uri is None:
-        raise CommandError(f"the master knows no node {name}")
-    return uri
-
-
 def run_info(arguments: argparse.Namespace) -> int:
-    """`roslet node info`. What the master knows is shown even where the node does not answer; then exit code 3."""
+    """`roslet node info`. What is known is shown even where the node does not answer; then exit code 3."""
     name = full_name(arguments.node)
-    problem = ""
-    with Graph(arguments.network) as graph:
-        uri = _uri(graph, name)
-        described: dict[str, Any] = {
-            "node": name,
-            "uri": uri,
-            "pid": None,
-            "publishes": _topics(graph, graph.publishers, name),
-            "subscribes": _topics(graph, graph.subscribers, name),
-            "services": [service for service in sorted(graph.services) if name in graph.services[service]],
-            "connections": [],
-        }
-        try:
-            described["pid"] = graph.node(uri, "getPid")
-            described["connections"] = _connections(graph, graph.node(uri, "getBusInfo"))
-        except (Unreachable, CallTimeout, RemoteError, ProtocolError) as error:
-            problem = str(error)
-    if arguments.json:
-        emit_json(described)
-    else:
-        _print_info(described)
+    with open_graph(arguments.network) as graph:
+        described, problem = graph.node_info(name)
+        if arguments.json:
+            emit_json(described)
+        else:
+            graph.print_node(described)
     if problem:
         raise CommandError(f"the node does not answer: {problem}", UNREACHABLE)
     return 0
-
-
-def _topics(graph: Graph, part: dict[str, list[str]], node: str) -> list[dict[str, str]]:
-    return [
-        {"topic": topic, "type": graph.types.get(topic, "*")} for topic in sorted(part) if node in part[topic]
-    ]
-
-
-def _connections(graph: Graph, rows: Any) -> list[dict[str, Any]]:
-    """The rows of getBusInfo: [id, whom, direction, transport, topic, connected, description]; the last are optional.
-
-    A node names those it receives from by the URI of their slave API; the master tells who that is.
-    """
-    names = {graph.lookup_node(node): node for node in graph.nodes()}
-    found = []
-    for row in rows if isinstance(rows, list) else []:
-        if isinstance(row, list) and len(row) >= 5:
-            found.append(
-                {
-                    "topic": str(row[4]),
-                    "direction": {"i": "in", "o": "out", "b": "both"}.get(str(row[2]), str(row[2])),
-                    "peer": names.get(str(row[1]), str(row[1])),
-                    "transport": str(row[3]),
-                    "connected": bool(row[5]) if len(row) > 5 else True,
-                }
-            )
-    return sorted(found, key=lambda row: (row["topic"], row["direction"], row["peer"]))
-
-
-def _print_info(described: dict[str, Any]) -> None:
-    print(f"Node: {described['node']}")
-    print(f"URI:  {described['uri']}")
-    print(f"PID:  {'-' if described['pid'] is None else described['pid']}")
-    for title, part in (("Publishes", "publishes"), ("Subscribes", "subscribes")):
-        print()
-        section(title, [(row["topic"], row["type"]) for row in described[part]])
-    print()
-    section("Services", [(service,) for service in described["services"]])
-    print()
-    section(
-        "Connections",
-        [
-            (
-                row["topic"],
-                {"in": "from", "out": "to"}.get(row["direction"], "with"),
-                row["peer"],
-                row["transport"],
-                "" if row["connected"] else "(connecting)",
-            )
-            for row in described["connections"]
-        ],
-    )
 
 
 def run_ping(arguments: argparse.Namespace) -> int:
@@ -176,9 +105,11 @@ def run_ping(arguments: argparse.Namespace) -> int:
         raise CommandError("name the nodes, or give --all", 2)
     results: dict[str, list[float]] = {}
     lost: dict[str, int] = {}
-    with Graph(arguments.network) as graph:
+    from roslet.cli.ros1.nodes import uri_of
+
+    with open_ros1(arguments.network, "node ping") as graph:
         nodes = graph.nodes() if arguments.all else [full_name(node) for node in arguments.nodes]
-        uris = {node: _uri(graph, node) for node in nodes}
+        uris = {node: uri_of(graph, node) for node in nodes}
         try:
             done = 0
             while True:
@@ -196,7 +127,9 @@ def run_ping(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _ping(graph: Graph, node: str, uri: str, times: list[float], lost: dict[str, int], as_json: bool) -> None:
+def _ping(
+    graph: Ros1Graph, node: str, uri: str, times: list[float], lost: dict[str, int], as_json: bool
+) -> None:
     begin = time.perf_counter()
     try:
         graph.node(uri, "getPid")
@@ -239,12 +172,14 @@ def run_kill(arguments: argparse.Namespace) -> int:
         raise CommandError("name the nodes, or give --all", 2)
     failed: dict[str, str] = {}
     ended = []
-    with Graph(arguments.network) as graph:
+    from roslet.cli.ros1.nodes import uri_of
+
+    with open_ros1(arguments.network, "node kill") as graph:
         if arguments.all:
             nodes = [node for node in graph.nodes() if node != "/rosout"]
         else:
             nodes = [full_name(node) for node in arguments.nodes]
-        uris = {node: _uri(graph, node) for node in nodes}
+        uris = {node: uri_of(graph, node) for node in nodes}
         for node, uri in uris.items():
             try:
                 graph.node(uri, "getPid")

@@ -31,6 +31,10 @@ EXIT_CODES = """exit codes:
 """
 
 
+# Help of the lists' --all.
+ALL = "hidden ones too: on ROS 2 names with a part that begins with _"
+
+
 class CommandError(RosletError):
     """The command cannot do what was asked; the text is for people. `code` is the exit code."""
 
@@ -107,8 +111,9 @@ def finish(
         parser.add_argument(
             "--network",
             metavar="URL",
-            default="ros1://",
-            help="ros1://host:port; default: $ROS_MASTER_URI, else localhost:11311",
+            default=default_network(),
+            help="ros2://DOMAIN or ros1://host:port; default: $ROSLET_NETWORK, else ros1:// where $ROS_MASTER_URI is set, "
+            "else ros2://",
         )
     if "types" in options:
         parser.add_argument(
@@ -121,6 +126,13 @@ def finish(
     if "json" in options:
         parser.add_argument("--json", action="store_true", help="print JSON")
     return parser
+
+
+def default_network() -> str:
+    """The network of a command that is told none: what $ROSLET_NETWORK says; else ROS 1 where $ROS_MASTER_URI is set, as in
+    the shells of those who use it; else ROS 2."""
+    said = os.environ.get("ROSLET_NETWORK", "")
+    return said or ("ros1://" if os.environ.get("ROS_MASTER_URI") else "ros2://")
 
 
 def positive(text: str) -> float:

@@ -1,18 +1,19 @@
-"""`roslet param`: the parameter server."""
+"""`roslet param`: the parameters of the master (ROS 1) or of nodes (ROS 2)."""
 
 from __future__ import annotations
 
 import sys
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.graph import Graph
-from roslet.cli.options import CommandError, Group, full_name
-from roslet.errors import Fault
+from roslet.cli.graph import open_graph
+from roslet.cli.options import CommandError, Group
+from roslet.cli.parameters import NotSet
 
 if TYPE_CHECKING:
     import argparse
 
 _VALUE = "a YAML value: 5, 0.5, true, hello, [1, 2], {a: 1}; without PyYAML: a scalar or JSON"
+_NODE = "the node whose parameter NAME is; without it NAME is a full name such as /node/name"
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -26,15 +27,27 @@ def add(parser: argparse.ArgumentParser) -> None:
         "roslet param list\nroslet param list /camera",
         "network json",
     )
-    list_.add_argument("namespace", nargs="?", default="/", metavar="NAMESPACE", help="those below it only")
+    list_.add_argument("namespace", nargs="?", default="/", metavar="NAMESPACE", help="or NODE: its own only")
+
+    describe = group.command(
+        "describe",
+        run_describe,
+        "show the type, the text and the range of parameters (ROS 2)",
+        "roslet param describe /camera rate\nroslet param describe /camera",
+        "network json",
+    )
+    describe.add_argument("node", metavar="NODE")
+    describe.add_argument("names", nargs="*", metavar="NAME", help="default: all that the node has")
 
     get = group.command(
         "get",
         run_get,
-        "print a parameter, or all below a namespace",
-        "roslet param get /camera/rate\nroslet param get /camera\nroslet param get /camera/rate --default 10",
+        "print a parameter, or all below a namespace or of a node",
+        "roslet param get /camera/rate\nroslet param get /camera rate\nroslet param get /camera\n"
+        "roslet param get /camera/rate --default 10",
         "network json",
     )
+    get.add_argument("node", nargs="?", default="", metavar="NODE", help=_NODE)
     get.add_argument("name", metavar="NAME")
     get.add_argument("--default", metavar="VALUE", help="what to print where it is not set; else exit code 1")
 
@@ -42,10 +55,12 @@ def add(parser: argparse.ArgumentParser) -> None:
         "set",
         run_set,
         "set a parameter",
-        "roslet param set /camera/rate 30\nroslet param set /camera '{rate: 30, name: left}'\n"
+        "roslet param set /camera/rate 30\nroslet param set /camera rate 30\n"
+        "roslet param set /camera '{rate: 30, name: left}'\n"
         "roslet param set /offset -- -0.5\nroslet param set --string /serial 0042",
         "network",
     )
+    set_.add_argument("node", nargs="?", default="", metavar="NODE", help=_NODE)
     set_.add_argument("name", metavar="NAME")
     set_.add_argument("value", metavar="VALUE", help=_VALUE)
     set_.add_argument("--string", action="store_true", help="VALUE is text, whatever it looks like")
@@ -54,6 +69,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "delete", run_delete, "delete parameters", "roslet param delete /camera/rate", "network"
     )
     delete.add_argument("names", nargs="+", metavar="NAME")
+    delete.add_argument("--node", default="", metavar="NODE", help=_NODE)
 
     dump = group.command(
         "dump",
@@ -63,9 +79,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "network json",
     )
     dump.add_argument("file", nargs="?", default="-", metavar="FILE", help="default: standard output")
-    dump.add_argument(
-        "namespace", nargs="?", default="/", metavar="NAMESPACE", help="what to dump; default: all"
-    )
+    dump.add_argument("namespace", nargs="?", default="/", metavar="NAMESPACE", help="or NODE; default: all")
     dump.description = (
         "Write parameters to a file.\n\nYAML where PyYAML is installed, which is extra `cli` of roslet; "
         "otherwise JSON, which every\nYAML reader reads too. --json writes JSON in any case."
@@ -79,7 +93,13 @@ def add(parser: argparse.ArgumentParser) -> None:
         "network",
     )
     load.add_argument("file", metavar="FILE", help="- for standard input")
-    load.add_argument("namespace", nargs="?", default="/", metavar="NAMESPACE", help="where to set them")
+    load.add_argument(
+        "namespace",
+        nargs="?",
+        default="/",
+        metavar="NAMESPACE",
+        help="or NODE: where to set them",
+    )
     load.description = (
         "Set parameters from a file.\n\n"
         "A YAML file needs PyYAML (extra `cli` of roslet); a JSON file does not."
@@ -87,29 +107,35 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """`roslet param list`."""
+    """`roslet param list`: names that `roslet param get` takes, on ROS 2 as NODE NAME."""
     from roslet.cli.output import emit_json, note
 
-    namespace = full_name(arguments.namespace).rstrip("/") + "/"
-    with Graph(arguments.network) as graph:
-        names = sorted(str(name) for name in graph.master("getParamNames"))
-    names = [name for name in names if name.startswith(namespace)]
+    with open_graph(arguments.network) as graph:
+        found = graph.parameters().names(arguments.namespace)
     if arguments.json:
-        emit_json(names)
+        emit_json([f"{node} {name}".lstrip() for node, name in found])
         return 0
-    for name in names:
-        print(name)
-    if not names:
-        note("no parameters" if namespace == "/" else f"no parameters below {namespace}")
+    for node, name in found:
+        print(f"{node} {name}".lstrip())
+    if not found:
+        below = arguments.namespace.rstrip("/")
+        note(f"no parameters below {below}/" if below else "no parameters")
     return 0
 
 
-def get_parameter(graph: Graph, name: str) -> Any:
-    """A parameter's value. Raises CommandError where it is not set."""
-    try:
-        return graph.master("getParam", name)
-    except Fault:
-        raise CommandError(f"parameter {name} is not set") from None
+def run_describe(arguments: argparse.Namespace) -> int:
+    """`roslet param describe`."""
+    from roslet.cli.output import emit_json
+    from roslet.cli.render import yaml_lines
+
+    with open_graph(arguments.network) as graph:
+        found = graph.parameters().describe(arguments.node, arguments.names)
+    if arguments.json:
+        emit_json(found)
+    else:
+        for line in yaml_lines({one.pop("name"): one for one in found}) if found else ():
+            print(line)
+    return 0
 
 
 def run_get(arguments: argparse.Namespace) -> int:
@@ -117,10 +143,10 @@ def run_get(arguments: argparse.Namespace) -> int:
     from roslet.cli.output import emit_json
     from roslet.cli.values import read_value
 
-    with Graph(arguments.network) as graph:
+    with open_graph(arguments.network) as graph:
         try:
-            value = plain(get_parameter(graph, full_name(arguments.name)))
-        except CommandError:
+            value = graph.parameters().get(arguments.node, arguments.name)
+        except NotSet:
             if arguments.default is None:
                 raise
             value = read_value(arguments.default)
@@ -143,46 +169,20 @@ def scalar_text(value: Any) -> str:
     return "" if value is None else str(value)
 
 
-def plain(value: Any) -> Any:
-    """A parameter with what JSON lacks turned into text."""
-    if isinstance(value, dict):
-        return {str(key): plain(inner) for key, inner in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(inner) for inner in value]
-    if isinstance(value, (bytes, bytearray)):
-        return value.decode("utf-8", "backslashreplace")
-    if value is None or isinstance(value, (bool, int, float, str)):
-        return value
-    return str(value)
-
-
 def run_set(arguments: argparse.Namespace) -> int:
     """`roslet param set`."""
     from roslet.cli.values import read_value
 
-    name = full_name(arguments.name)
     value = arguments.value if arguments.string else read_value(arguments.value)
-    with Graph(arguments.network) as graph:
-        _set(graph, name, value)
+    with open_graph(arguments.network) as graph:
+        graph.parameters().set(arguments.node, arguments.name, value)
     return 0
-
-
-def _set(graph: Graph, name: str, value: Any) -> None:
-    try:
-        graph.master("setParam", name, value)
-    except Fault as error:
-        raise CommandError(f"the master does not set {name}: {error.message}") from None
 
 
 def run_delete(arguments: argparse.Namespace) -> int:
     """`roslet param delete`: each name; those that are not set are named and the exit code is 1."""
-    missing = []
-    with Graph(arguments.network) as graph:
-        for name in [full_name(name) for name in arguments.names]:
-            try:
-                graph.master("deleteParam", name)
-            except Fault:
-                missing.append(name)
+    with open_graph(arguments.network) as graph:
+        missing = graph.parameters().delete(arguments.node, arguments.names)
     if missing:
         raise CommandError(f"not set: {', '.join(missing)}")
     return 0
@@ -192,9 +192,8 @@ def run_dump(arguments: argparse.Namespace) -> int:
     """`roslet param dump`."""
     from roslet.cli.values import yaml_module
 
-    namespace = full_name(arguments.namespace)
-    with Graph(arguments.network) as graph:
-        value = plain(get_parameter(graph, namespace))
+    with open_graph(arguments.network) as graph:
+        value = graph.parameters().dump(arguments.namespace)
     yaml = None if arguments.json else yaml_module()
     if yaml is not None:
         text = str(yaml.safe_dump(value, default_flow_style=False, allow_unicode=True))
@@ -221,14 +220,6 @@ def run_load(arguments: argparse.Namespace) -> int:
         with open(arguments.file, encoding="utf-8") as file:
             text, name = file.read(), arguments.file
     value = read_document(text, name)
-    namespace = full_name(arguments.namespace)
-    if not isinstance(value, dict) and namespace == "/":
-        raise CommandError(f"{name}: expected names and values, not {type(value).__name__}")
-    with Graph(arguments.network) as graph:
-        if isinstance(value, dict):
-            # One by one: setting a namespace as a whole would delete what the file does not name.
-            for key, inner in value.items():
-                _set(graph, namespace.rstrip("/") + "/" + str(key).lstrip("/"), inner)
-        else:
-            _set(graph, namespace, value)
+    with open_graph(arguments.network) as graph:
+        graph.parameters().load(value, arguments.namespace, name)
     return 0

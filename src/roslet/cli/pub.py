@@ -5,18 +5,21 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from roslet.cli.graph import Graph
+from roslet.cli.graph import is_ros1
 from roslet.cli.options import USAGE, CommandError, full_name, load_types
 from roslet.cli.output import note
-from roslet.cli.session import open_node
+from roslet.cli.session import open_session, qos_fields
 from roslet.cli.topic import topic_type
 from roslet.cli.values import build
+from roslet.node.qos import QoS
 
 if TYPE_CHECKING:
     import argparse
 
+    from roslet.cli.session import Session
     from roslet.node.node import Node
     from roslet.node.topics import Publisher
+    from roslet.wire.message import Message
 
 # Seconds for a message to leave after it was published: a socket's send buffer needs the process to live on.
 DRAIN = 2.0
@@ -32,23 +35,22 @@ def publish(arguments: argparse.Namespace) -> int:
         raise CommandError("-1 and -r exclude each other", USAGE)
     load_types(arguments)
     topic = full_name(arguments.topic)
-    kind = arguments.type
-    if kind == "-":
-        with Graph(arguments.network) as graph:
-            kind = topic_type(graph, topic)
-    from roslet.gen.runtime import message_class
-
-    message_type = message_class("ros1", kind)
-    build(message_type, arguments.values, _now)  # what is wrong with the values is said before a node appears
     latch = arguments.latch or (arguments.rate is None and not arguments.once)
-    from roslet.node.qos import QoS
-
-    qos = QoS(depth=100, durability="transient_local" if latch else "volatile")
-    with open_node(arguments, "pub") as node:
-        publisher = node.publisher(topic, message_type, qos=qos)
+    fields = {
+        "depth": 100,
+        "durability": "transient_local" if latch else "volatile",
+        **qos_fields(arguments.qos),
+    }
+    # What is wrong with the values is said before a node appears, where the type is known without one.
+    message_type = None if arguments.type == "-" else _checked(arguments, arguments.type)
+    with open_session(arguments, "pub") as session:
+        node = session.node
+        if message_type is None:
+            message_type = _checked(arguments, topic_type(session.graph, topic))
+        publisher = node.publisher(topic, message_type, qos=QoS(**fields))
         end = None if arguments.limit is None else time.monotonic() + arguments.limit
         if arguments.once:
-            _once(arguments, node, publisher)
+            _once(arguments, session, publisher)
         elif arguments.rate is not None:
             _repeat(arguments, node, publisher, end)
         else:
@@ -58,19 +60,28 @@ def publish(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _checked(arguments: argparse.Namespace, kind: str) -> type[Message]:
+    """The class of a type, for which the values given are right."""
+    from roslet.gen.runtime import message_class
+
+    found = message_class("ros1" if is_ros1(arguments.network) else "ros2", kind)
+    build(found, arguments.values, _now)
+    return found
+
+
 def _now() -> object:
     from roslet.wire.time import Time
 
     return Time()
 
 
-def _once(arguments: argparse.Namespace, node: Node, publisher: Publisher) -> None:
-    """Wait until every subscriber that the master knows is connected, or the time is up; then publish."""
+def _once(arguments: argparse.Namespace, session: Session, publisher: Publisher) -> None:
+    """Wait until every subscriber that is known is connected, or the time is up; then publish."""
+    node = session.node
     end = time.monotonic() + max(0.0, arguments.wait)
 
     def complete() -> bool:
-        wanted = len(set(node.system_state()[1].get(publisher.topic, ())))
-        return publisher.subscriber_count >= max(1, wanted)
+        return publisher.subscriber_count >= max(1, session.expected(publisher))
 
     while time.monotonic() < end and not complete() and not node.is_shutdown:
         node.sleep(LOOK)

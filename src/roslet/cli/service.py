@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.graph import Graph
-from roslet.cli.options import USAGE, CommandError, Group, full_name, load_types, positive
+from roslet.cli.graph import open_graph
+from roslet.cli.options import ALL, USAGE, CommandError, Group, full_name, load_types, positive
 from roslet.cli.output import emit_json, note, table
 
 if TYPE_CHECKING:
     import argparse
+
+    from roslet.cli.session import Session
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -25,11 +27,12 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     list_.add_argument("namespace", nargs="?", default="/", metavar="NAMESPACE", help="those below it only")
     list_.add_argument("-q", "--names", action="store_true", help="names only, one a line")
+    list_.add_argument("-a", "--all", action="store_true", help=ALL)
     list_.add_argument(
         "-t",
         "--types-too",
         action="store_true",
-        help="ask each server for its type (the master does not know)",
+        help="types too; on ROS 1 each server is asked (the master does not know)",
     )
 
     info = group.command(
@@ -45,6 +48,15 @@ def add(parser: argparse.ArgumentParser) -> None:
         "type", run_type, "print a service's type", "roslet service type /add", "network json"
     )
     type_.add_argument("service", metavar="SERVICE")
+
+    find = group.command(
+        "find",
+        run_find,
+        "list the services of a type",
+        "roslet service find std_srvs/SetBool",
+        "network json",
+    )
+    find.add_argument("type", metavar="TYPE", help="package/Name or package/srv/Name, on either network")
 
     call = group.command(
         "call",
@@ -81,14 +93,18 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run_list(arguments: argparse.Namespace) -> int:
     """`roslet service list`."""
     namespace = full_name(arguments.namespace).rstrip("/") + "/"
-    with Graph(arguments.network) as graph:
-        names = [name for name in sorted(graph.services) if name.startswith(namespace)]
+    with open_graph(arguments.network) as graph:
+        names = [
+            name
+            for name in sorted(graph.services)
+            if name.startswith(namespace) and (arguments.all or not graph.hidden(name))
+        ]
         rows: list[dict[str, Any]] = []
         for name in names:
             row: dict[str, Any] = {"service": name, "nodes": graph.services[name]}
             if arguments.types_too:
                 try:
-                    row["type"] = graph.probe_service(name).get("type", "*")
+                    row["type"] = graph.service_type(name)
                 except CommandError:
                     row["type"] = None
             rows.append(row)
@@ -113,23 +129,18 @@ def run_info(arguments: argparse.Namespace) -> int:
     """`roslet service info`."""
     from roslet.cli.interface import definition_lines
     from roslet.errors import DefinitionError
-    from roslet.idl import ROS1, Registry
+    from roslet.idl import Registry
 
     name = full_name(arguments.service)
-    with Graph(arguments.network) as graph:
-        fields = graph.probe_service(name)
-        nodes = graph.services.get(name, [])
-    kind = fields.get("type", "*")
-    described: dict[str, Any] = {
-        "service": name,
-        "type": kind,
-        "md5sum": fields.get("md5sum", "*"),
-        "nodes": nodes,
-        "uri": fields["uri"],
-        "request": None,
-        "response": None,
-    }
-    registry = Registry(ROS1)
+    with open_graph(arguments.network) as graph:
+        described: dict[str, Any] = {
+            "service": name,
+            **graph.service_info(name),
+            "request": None,
+            "response": None,
+        }
+    kind = described["type"]
+    registry = Registry(graph.dialect)
     for path in arguments.types:
         registry.load(path)
     try:
@@ -143,9 +154,10 @@ def run_info(arguments: argparse.Namespace) -> int:
         return 0
     print(f"Service: {name}")
     print(f"Type:    {kind}")
-    print(f"MD5:     {described['md5sum']}")
-    print(f"Node:    {', '.join(nodes) or '-'}")
-    print(f"URI:     {described['uri']}")
+    for key, title in graph.service_titles:
+        value = described[key]
+        text = ", ".join(value) or "-" if isinstance(value, list) else value
+        print(f"{title + ':':<8} {text}")
     for title, part in (("Request", "request"), ("Response", "response")):
         lines = described[part]
         print()
@@ -161,8 +173,8 @@ def run_info(arguments: argparse.Namespace) -> int:
 def run_type(arguments: argparse.Namespace) -> int:
     """`roslet service type`."""
     name = full_name(arguments.service)
-    with Graph(arguments.network) as graph:
-        kind = graph.probe_service(name).get("type", "*")
+    with open_graph(arguments.network) as graph:
+        kind = graph.service_type(name)
     if arguments.json:
         emit_json({"service": name, "type": kind})
     else:
@@ -170,28 +182,51 @@ def run_type(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def run_find(arguments: argparse.Namespace) -> int:
+    """`roslet service find`. On ROS 1 every server is asked; one that does not answer is of no type."""
+    wanted = arguments.type.replace("/srv/", "/", 1)
+    found = []
+    with open_graph(arguments.network) as graph:
+        for name in sorted(graph.services):
+            try:
+                kind = graph.service_type(name)
+            except CommandError:
+                continue
+            if wanted in [one.replace("/srv/", "/", 1) for one in kind.split(", ")]:
+                found.append(name)
+    if arguments.json:
+        emit_json(found)
+    else:
+        for name in found:
+            print(name)
+        if not found:
+            note(f"no services of {arguments.type}")
+    return 0
+
+
 def run_call(arguments: argparse.Namespace) -> int:
     """`roslet service call`."""
     from roslet.cli.render import plain, yaml_lines
-    from roslet.cli.session import open_node
+    from roslet.cli.session import open_session
     from roslet.cli.values import build
     from roslet.errors import ServiceFailed, UnknownType
 
     load_types(arguments)
     name = full_name(arguments.service)
-    with Graph(arguments.network) as graph:
+    with open_session(arguments, "call") as session:
+        graph = session.graph
         if arguments.wait is not None:
-            _wait(graph, name, arguments.wait)
-        kind = arguments.type or graph.probe_service(name).get("type", "*")
-    if kind == "*":
-        raise CommandError(f"the server of {name} does not say its type; give --type", USAGE)
-    from roslet.gen.runtime import service_class
+            _wait(session, name, arguments.wait)
+        kind = arguments.type or graph.service_type(name)
+        if kind == "*":
+            raise CommandError(f"the server of {name} does not say its type; give --type", USAGE)
+        from roslet.gen.runtime import service_class
 
-    try:
-        service_type = service_class("ros1", kind)
-    except UnknownType as error:
-        raise CommandError(f"{error}; load it with --types DIR") from None
-    with open_node(arguments, "call") as node:
+        try:
+            service_type = service_class(graph.dialect, kind)
+        except UnknownType as error:
+            raise CommandError(f"{error}; load it with --types DIR") from None
+        node = session.node
         request = build(service_type.Request, arguments.values, node.now)
         try:
             response = node.client(name, service_type).call(request, timeout=arguments.timeout)
@@ -206,11 +241,11 @@ def run_call(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _wait(graph: Graph, name: str, seconds: float) -> None:
+def _wait(session: Session, name: str, seconds: float) -> None:
     import time
 
     end = time.monotonic() + seconds
-    while graph.lookup_service(name) is None:
+    while not session.graph.has_service(name):
         if time.monotonic() >= end:
             raise CommandError(f"there is no service {name} within {seconds:g} s", 3)
-        time.sleep(0.05)
+        session.pause(0.05)

@@ -1,24 +1,110 @@
-"""A node for a command, where asking the master is not enough."""
+"""A node for a command, where asking about the network is not enough."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import time
+from typing import TYPE_CHECKING, Any
 
-from roslet.cli.graph import Graph
+from roslet.cli.graph import Graph, is_ros1
+from roslet.cli.options import USAGE, CommandError
+from roslet.node.qos import QoS
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Callable, Sequence
+    from types import TracebackType
 
+    from typing_extensions import Self
+
+    from roslet.cli.reader import Reader
     from roslet.node.node import Node
+    from roslet.node.topics import Publisher
 
 
-def open_node(arguments: argparse.Namespace, name: str) -> Node:
-    """A node of a name of its own, on the network that the command was given.
+class Tap:
+    """What listens to a topic of any type."""
+
+    @property
+    def publisher_count(self) -> int:
+        """Publishers connected now."""
+        raise NotImplementedError
+
+
+class Session:
+    """A context manager: `node` is a node of a name of its own, `graph` what there is besides."""
+
+    node: Node
+    graph: Graph
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """The node goes."""
+        raise NotImplementedError
+
+    def listen(
+        self, topic: str, callback: Callable[[Any], object], depth: int, qos: Sequence[str], kept: bool = True
+    ) -> Tap:
+        """Call `callback(RawMessage)` for each message of a topic, whatever its type. `qos` is what --qos said; without
+        `kept` messages of before are not wanted. On ROS 2 nobody can subscribe before the type is known: that waits until
+        the topic is there."""
+        raise NotImplementedError
+
+    def reader(self) -> Reader:
+        """What makes messages of raw ones."""
+        raise NotImplementedError
+
+    def expected(self, publisher: Publisher) -> int:
+        """How many subscribers the publisher should have, by what the network knows."""
+        raise NotImplementedError
+
+    def pause(self, seconds: float) -> None:
+        """Let things happen for a time."""
+        time.sleep(seconds)
+
+
+def open_session(arguments: argparse.Namespace, name: str) -> Session:
+    """A node on the network that the command was given; on ROS 2, after discovery had its time.
 
     Raises CommandError (nobody reachable) where there is no master now: a command should say so rather than wait.
     """
-    with Graph(arguments.network) as graph:
-        graph.master("getUri")
-    from roslet.node.node import Node
+    if is_ros1(arguments.network):
+        from roslet.cli.ros1.session import Ros1Session
 
-    return Node("roslet_" + name, network=arguments.network, anonymous=True)
+        return Ros1Session(arguments.network, name)
+    from roslet.cli.ros2.session import Ros2Session
+
+    return Ros2Session(arguments.network, name)
+
+
+_WORDS = ("reliability", "durability", "history", "liveliness")
+_SECONDS = ("deadline", "lifespan", "liveliness_lease")
+
+
+def qos_fields(words: Sequence[str]) -> dict[str, Any]:
+    """What --qos says, as fields of a QoS. Raises CommandError (wrong usage)."""
+    fields: dict[str, Any] = {}
+    for word in words:
+        for part in word.split(","):
+            name, found, text = part.strip().partition("=")
+            try:
+                if name == "depth":
+                    fields[name] = int(text)
+                elif name in _SECONDS:
+                    fields[name] = float(text)
+                elif name in _WORDS and found:
+                    fields[name] = text
+                else:
+                    raise ValueError(
+                        f"{part!r} is no policy with a value; there are {', '.join(('depth', *_WORDS, *_SECONDS))}"
+                    )
+                QoS(**fields)
+            except ValueError as error:
+                raise CommandError(f"--qos: {error}", USAGE) from None
+    return fields

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.options import CommandError, Group, count, full_name, positive
+from roslet.cli.options import ALL, CommandError, Group, count, full_name, positive
 
 if TYPE_CHECKING:
     import argparse
@@ -27,6 +27,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     list_.add_argument("namespace", nargs="?", default="/", metavar="NAMESPACE", help="those below it only")
     list_.add_argument("-q", "--names", action="store_true", help="names only, one a line")
+    list_.add_argument("-a", "--all", action="store_true", help=ALL)
 
     info = group.command(
         "info",
@@ -36,6 +37,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         "network json",
     )
     info.add_argument("topic", metavar="TOPIC")
+    info.add_argument(
+        "-v", "--verbose", action="store_true", help="on ROS 2 also type hashes, ids and every policy"
+    )
 
     type_ = group.command(
         "type",
@@ -46,12 +50,23 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     type_.add_argument("topic", metavar="TOPIC")
 
+    find = group.command(
+        "find",
+        run_find,
+        "list the topics of a type",
+        "roslet topic find sensor_msgs/msg/Image\nroslet topic find std_msgs/String",
+        "network json",
+    )
+    find.add_argument("type", metavar="TYPE", help="package/Name or package/msg/Name, on either network")
+    find.add_argument("-a", "--all", action="store_true", help=ALL)
+
     _add_echo(group)
     _add_pub(group)
 
     for name, function, summary in (
         ("hz", run_hz, "measure the rate at which messages arrive"),
         ("bw", run_bw, "measure the bytes per second of a topic"),
+        ("delay", run_delay, "measure how old messages are when they arrive, by the stamp in their header"),
     ):
         live = group.command(
             name,
@@ -59,8 +74,9 @@ def add(parser: argparse.ArgumentParser) -> None:
             summary,
             f"roslet topic {name} /chatter\nroslet topic {name} /scan /image --for 10\n"
             f"roslet topic {name} /scan --json --for 5",
-            "network json",
+            "network types json",
         )
+        add_qos(live)
         live.add_argument("topics", nargs="+", metavar="TOPIC")
         live.add_argument(
             "-w",
@@ -76,6 +92,18 @@ def add(parser: argparse.ArgumentParser) -> None:
         live.add_argument("--for", dest="limit", type=positive, metavar="SECONDS", help=_FOR)
 
 
+def add_qos(parser: argparse.ArgumentParser) -> None:
+    """Declare --qos."""
+    parser.add_argument(
+        "--qos",
+        metavar="POLICY=VALUE",
+        action="append",
+        default=[],
+        help="of this end: depth=5, reliability=best_effort, durability=transient_local, deadline=0.5, ...; default: a "
+        "subscription on ROS 2 suits the topic's publishers",
+    )
+
+
 def _add_echo(group: Group) -> None:
     echo = group.command(
         "echo",
@@ -87,8 +115,9 @@ def _add_echo(group: Group) -> None:
     )
     echo.description = (
         "Print a topic's messages as YAML, one document each.\n\nTypes that are not installed here are shown by "
-        "the definition that their publisher sends."
+        "the definition that their publisher sends;\non ROS 2, by the description that its node gives."
     )
+    add_qos(echo)
     echo.add_argument("topic", metavar="TOPIC")
     echo.add_argument("-n", "--count", type=count, metavar="COUNT", help="stop after COUNT messages")
     echo.add_argument("-1", "--once", action="store_const", const=1, dest="count", help="stop after one")
@@ -124,8 +153,11 @@ def _add_pub(group: Group) -> None:
         "YAML\n(JSON or a scalar where PyYAML is not installed); `now` is the present time, `auto` a\n"
         "header with the present time. Fields that are not given keep their defaults."
     )
+    add_qos(pub)
     pub.add_argument("topic", metavar="TOPIC")
-    pub.add_argument("type", metavar="TYPE", help="package/Name, or - for the type that the topic has")
+    pub.add_argument(
+        "type", metavar="TYPE", help="package/Name or package/msg/Name, or - for the type that the topic has"
+    )
     pub.add_argument(
         "values",
         nargs="*",
@@ -153,12 +185,16 @@ def _add_pub(group: Group) -> None:
 
 def run_list(arguments: argparse.Namespace) -> int:
     """`roslet topic list`."""
-    from roslet.cli.graph import Graph
+    from roslet.cli.graph import open_graph
     from roslet.cli.output import emit_json, note, table
 
     namespace = full_name(arguments.namespace).rstrip("/") + "/"
-    with Graph(arguments.network) as graph:
-        topics = [topic for topic in graph.topics() if topic.startswith(namespace)]
+    with open_graph(arguments.network) as graph:
+        topics = [
+            topic
+            for topic in graph.topics()
+            if topic.startswith(namespace) and (arguments.all or not graph.hidden(topic))
+        ]
         if arguments.names:
             for topic in topics:
                 print(topic)
@@ -201,24 +237,24 @@ def _known(graph: Graph, name: str) -> str:
 
 def run_info(arguments: argparse.Namespace) -> int:
     """`roslet topic info`."""
-    from roslet.cli.graph import Graph
+    from roslet.cli.graph import open_graph
     from roslet.cli.output import emit_json, section
 
-    with Graph(arguments.network) as graph:
+    with open_graph(arguments.network) as graph:
         topic = _known(graph, arguments.topic)
-        described = describe(graph, topic)
-        nodes = {*described["publishers"], *described["subscribers"]}
-        uris = {node: graph.lookup_node(node) or "" for node in sorted(nodes)}
+        described: dict[str, Any] = {
+            "topic": topic,
+            "type": graph.types.get(topic, "*"),
+            **graph.endpoints_info(topic),
+        }
     if arguments.json:
-        for part in ("publishers", "subscribers"):
-            described[part] = [{"node": node, "uri": uris[node]} for node in described[part]]
         emit_json(described)
         return 0
     print(f"Topic: {topic}")
     print(f"Type:  {described['type']}")
     for title, part in (("Publishers", "publishers"), ("Subscribers", "subscribers")):
         print()
-        section(title, [(node, uris[node]) for node in described[part]])
+        section(title, graph.endpoint_rows(described[part], arguments.verbose))
     return 0
 
 
@@ -232,10 +268,10 @@ def topic_type(graph: Graph, topic: str) -> str:
 
 def run_type(arguments: argparse.Namespace) -> int:
     """`roslet topic type`."""
-    from roslet.cli.graph import Graph
+    from roslet.cli.graph import open_graph
     from roslet.cli.output import emit_json
 
-    with Graph(arguments.network) as graph:
+    with open_graph(arguments.network) as graph:
         topic = _known(graph, arguments.topic)
         kind = topic_type(graph, topic)
     if arguments.json:
@@ -243,6 +279,34 @@ def run_type(arguments: argparse.Namespace) -> int:
     else:
         print(kind)
     return 0
+
+
+def run_find(arguments: argparse.Namespace) -> int:
+    """`roslet topic find`."""
+    from roslet.cli.graph import open_graph
+    from roslet.cli.output import emit_json, note
+
+    wanted = _bare(arguments.type)
+    with open_graph(arguments.network) as graph:
+        found = [
+            topic
+            for topic in graph.topics()
+            if wanted in [_bare(kind) for kind in graph.types.get(topic, "*").split(", ")]
+            and (arguments.all or not graph.hidden(topic))
+        ]
+    if arguments.json:
+        emit_json(found)
+    else:
+        for topic in found:
+            print(topic)
+        if not found:
+            note(f"no topics of {arguments.type}")
+    return 0
+
+
+def _bare(kind: str) -> str:
+    """A message type without what ROS 2 puts in its middle."""
+    return kind.replace("/msg/", "/", 1)
 
 
 def run_echo(arguments: argparse.Namespace) -> int:
@@ -263,11 +327,18 @@ def run_hz(arguments: argparse.Namespace) -> int:
     """`roslet topic hz`."""
     from roslet.cli.measure import measure
 
-    return measure(arguments, sizes=False)
+    return measure(arguments, "hz")
 
 
 def run_bw(arguments: argparse.Namespace) -> int:
     """`roslet topic bw`."""
     from roslet.cli.measure import measure
 
-    return measure(arguments, sizes=True)
+    return measure(arguments, "bw")
+
+
+def run_delay(arguments: argparse.Namespace) -> int:
+    """`roslet topic delay`."""
+    from roslet.cli.measure import measure
+
+    return measure(arguments, "delay")

@@ -30,14 +30,19 @@ def read_value(text: str) -> Any:
     """The value of one command-line argument. Raises CommandError for text that looks like a structure but is none."""
     yaml = yaml_module()
     if yaml is not None:
+        from roslet.node.values import load_yaml
+
         try:
-            value = yaml.safe_load(text)
-        except yaml.YAMLError as error:
-            raise CommandError(f"not YAML: {text!r}: {_yaml_problem(error)}", USAGE) from None
+            value = load_yaml(yaml, text)
+        except ValueError as error:
+            raise CommandError(f"not YAML: {text!r}: {error}", USAGE) from None
         return "" if value is None and not text.strip() else value
     from roslet.node.values import parse_value
 
-    value = parse_value(text)
+    try:
+        value = parse_value(text)
+    except RecursionError:
+        raise CommandError(f"nested too deeply: {text[:40]!r}...", USAGE) from None
     if value == text and (text.strip()[:1] in ("{", "[") or ": " in text):
         raise CommandError(f"not JSON: {text!r} (YAML needs PyYAML: pip install 'roslet[cli]')", USAGE)
     return value
@@ -47,22 +52,20 @@ def read_document(text: str, name: str) -> Any:
     """The value that a file holds. Raises CommandError, which names the file."""
     yaml = yaml_module()
     if yaml is not None:
+        from roslet.node.values import load_yaml
+
         try:
-            return yaml.safe_load(text)
-        except yaml.YAMLError as error:
-            raise CommandError(f"{name}: {_yaml_problem(error)}") from None
+            return load_yaml(yaml, text)
+        except ValueError as error:
+            raise CommandError(f"{name}: {error}") from None
     import json
 
     try:
         return json.loads(text)
+    except RecursionError:
+        raise CommandError(f"{name}: nested too deeply") from None
     except ValueError as error:
         raise CommandError(f"{name}: {error}; a YAML file needs PyYAML: pip install 'roslet[cli]'") from None
-
-
-def _yaml_problem(error: Exception) -> str:
-    mark = getattr(error, "problem_mark", None)
-    problem = getattr(error, "problem", None) or str(error)
-    return problem if mark is None else f"line {mark.line + 1}, column {mark.column + 1}: {problem}"
 
 
 def build(kind: type[Message], arguments: Sequence[str], now: Callable[[], Any]) -> Message:
@@ -175,6 +178,9 @@ def _converted(value: Any, base: Any, kind: int, path: str, now: Callable[[], An
         return [_converted(item, base, 0, f"{path}[{at}]", now) for at, item in enumerate(value)]
     if not isinstance(base, str):
         made: Message = base() if old is None else old
+        if value == "now" and base._type == "builtin_interfaces/msg/Time":
+            stamp = now()
+            value = {"sec": stamp.secs, "nanosec": stamp.nsecs}
         if value == "auto" and base._type in ("std_msgs/Header", "std_msgs/msg/Header"):
             value = {"stamp": "now"}
         fill(made, value, now, path)
@@ -189,7 +195,10 @@ def _converted(value: Any, base: Any, kind: int, path: str, now: Callable[[], An
             except ValueError:
                 return value
         if isinstance(value, int) and not isinstance(value, bool):
-            return float(value)
+            try:
+                return float(value)
+            except OverflowError:
+                raise InvalidMessage("too large for a float", path) from None
     return value
 
 

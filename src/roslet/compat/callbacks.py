@@ -70,7 +70,8 @@ class Worker:
             try:
                 self._work(item)
             except Exception:
-                # User code is guarded where it is called; what else fails must not end the thread.
+                # The program's code is guarded where it is called. What fails here is a slip of ours: it is shown, and
+                # the topic does not fall silent for it.
                 traceback.print_exc()
 
     def close(self) -> None:

@@ -1,4 +1,5 @@
-"""What `import` finds in a rospy program: `rospy` and its like are our modules, `pkg.msg` and `pkg.srv` the registry's.
+"""What `import` finds in a rospy or rclpy program: `rospy`, `rclpy` and their like are our modules, `pkg.msg` and its like
+the registry's.
 
 A package's own Python code, where it is installed or on the path, is found as ever; only its `msg` and `srv` are ours, since
 generated ones need genpy.
@@ -8,6 +9,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import re
 import sys
 from importlib.machinery import ModuleSpec, PathFinder
 from types import ModuleType
@@ -19,12 +21,12 @@ from roslet.gen import runtime
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from roslet.idl.records import Kind
+    from roslet.idl.records import Dialect, Kind
 
-OURS = ("rospy", "genpy", "roslib", "rosgraph")
-KINDS: tuple[Kind, ...] = ("msg", "srv")
+OURS = {"ros1": ("rospy", "genpy", "roslib", "rosgraph"), "ros2": ("rclpy",)}
+KINDS: dict[str, tuple[Kind, ...]] = {"ros1": ("msg", "srv"), "ros2": ("msg", "srv", "action")}
 
-# Packages that rospy programs often import and whose Python code is no part of roslet: what to say instead of "no module".
+# Packages that such programs often import and whose Python code is no part of roslet: what to say instead of "no module".
 NOT_HERE = {
     "actionlib": "its messages are here (actionlib.msg), its clients and servers are not",
     "tf": "its messages are here (tf.msg), its listeners and broadcasters are not",
@@ -42,29 +44,48 @@ NOT_HERE = {
     "roslaunch": "start each program with `roslet run`",
     "rospkg": "it is on PyPI: pip install rospkg",
     "rosmsg": "`roslet interface` does what its functions do",
+    "ament_index_python": "packages are not installed here: name files by their paths",
+    "launch": "start each program with `roslet run`",
+    "launch_ros": "start each program with `roslet run`",
+    "rosbag2_py": "the package rosbags reads and writes bags without ROS",
+    "rosidl_runtime_py": "`roslet interface` and `roslet topic` do what its functions do",
+    "ros2cli": "`roslet` does what its commands do",
 }
 
 
 class Finder:
-    """Stands before all other finders. See the module."""
+    """Stands before all other finders, for programs of one dialect. See the module."""
+
+    def __init__(self, dialect: Dialect = "ros1") -> None:
+        self.dialect: Dialect = dialect
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
         """For the import system."""
         top, _, rest = fullname.partition(".")
-        if top in OURS:
+        if top in OURS[self.dialect]:
             return self._ours(fullname)
         if not rest:
             return self._package(top)
         kind, _, member = rest.partition(".")
-        for known in KINDS:
-            if kind == known and "." not in member and _names(top, known):
+        for known in KINDS[self.dialect]:
+            if kind == known and "." not in member and _names(self.dialect, top, known):
                 if not member:
-                    return _spec(fullname, _KindLoader(top, known), True)
-                if member.startswith("_") and member[1:] in _names(top, known):
-                    return _spec(fullname, _MemberLoader(top, known, member[1:]), False)
+                    return _spec(fullname, _KindLoader(self.dialect, top, known), True)
+                name = self._member(top, known, member)
+                if name:
+                    return _spec(fullname, _MemberLoader(self.dialect, top, known, name), False)
         return None
+
+    def _member(self, package: str, kind: Kind, module: str) -> str:
+        """The definition that a generated module holds: `_Name` as genpy calls it, `_some_name` as rosidl does."""
+        if not module.startswith("_"):
+            return ""
+        for name in _names(self.dialect, package, kind):
+            if module[1:] == (name if self.dialect == "ros1" else _snake(name)):
+                return name
+        return ""
 
     def _ours(self, fullname: str) -> ModuleSpec | None:
         name = "roslet.compat." + fullname
@@ -79,7 +100,7 @@ class Finder:
     def _package(self, name: str) -> ModuleSpec | None:
         if name in sys.builtin_module_names or name.startswith("_"):
             return None
-        has_definitions = any(_names(name, kind) for kind in KINDS)
+        has_definitions = any(_names(self.dialect, name, kind) for kind in KINDS[self.dialect])
         if not has_definitions and name not in NOT_HERE:
             return None
         real = PathFinder.find_spec(name)
@@ -94,11 +115,19 @@ def _spec(name: str, loader: Any, is_package: bool) -> ModuleSpec:
     return ModuleSpec(name, loader, is_package=is_package)
 
 
-def _names(package: str, kind: Kind) -> set[str]:
-    """What `package.kind` has, by the registry: definitions, and what is derived of services and actions."""
+def _snake(name: str) -> str:
+    """A type's name as rosidl names its files: `PointCloud2` is in `point_cloud2`."""
+    name = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
+    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
+
+
+def _names(dialect: Dialect, package: str, kind: Kind) -> set[str]:
+    """What `package.kind` has, by the registry: definitions, and what ROS 1 derives of services and actions."""
     try:
-        registry = runtime.registry("ros1")
+        registry = runtime.registry(dialect)
         found = {name.name for name in registry.names(kind, package)}
+        if dialect == "ros2":
+            return found
         if kind == "srv":
             found.update([name + part for name in list(found) for part in ("Request", "Response")])
         else:
@@ -151,9 +180,10 @@ class _PackageLoader:
 
 
 class _KindLoader:
-    """`package.msg` or `package.srv`: classes are made when they are asked for."""
+    """`package.msg` and its like: classes are made when they are asked for."""
 
-    def __init__(self, package: str, kind: Kind) -> None:
+    def __init__(self, dialect: Dialect, package: str, kind: Kind) -> None:
+        self.dialect: Dialect = dialect
         self.package = package
         self.kind = kind
 
@@ -164,13 +194,13 @@ class _KindLoader:
         module.__doc__ = f"The {self.kind} definitions of {self.package}."
         module.__path__ = []
         module.__getattr__ = self._getter(module)  # type: ignore[method-assign]
-        module.__dir__ = lambda: sorted(_names(self.package, self.kind))  # type: ignore[method-assign]
+        module.__dir__ = lambda: sorted(_names(self.dialect, self.package, self.kind))  # type: ignore[method-assign]
 
     def _getter(self, module: ModuleType) -> Callable[[str], Any]:
         def get(name: str) -> Any:
             if name == "__all__":
-                return sorted(_names(self.package, self.kind))
-            made = None if name.startswith("_") else class_of(self.package, self.kind, name)
+                return sorted(_names(self.dialect, self.package, self.kind))
+            made = None if name.startswith("_") else class_of(self.package, self.kind, name, self.dialect)
             if made is None:
                 raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
             setattr(module, name, made)
@@ -180,9 +210,10 @@ class _KindLoader:
 
 
 class _MemberLoader:
-    """`package.msg._Name`, which genpy's generated packages have."""
+    """`package.msg._Name`, which generated packages have."""
 
-    def __init__(self, package: str, kind: Kind, name: str) -> None:
+    def __init__(self, dialect: Dialect, package: str, kind: Kind, name: str) -> None:
+        self.dialect: Dialect = dialect
         self.package = package
         self.kind = kind
         self.name = name
@@ -191,34 +222,70 @@ class _MemberLoader:
         return None
 
     def exec_module(self, module: ModuleType) -> None:
-        parts = ("", "Request", "Response") if self.kind == "srv" else ("",)
+        parts = ("", "Request", "Response") if self.kind == "srv" and self.dialect == "ros1" else ("",)
         for part in parts:
-            made = class_of(self.package, self.kind, self.name + part)
+            made = class_of(self.package, self.kind, self.name + part, self.dialect)
             if made is not None:
                 setattr(module, self.name + part, made)
+        if self.kind == "srv" and self.dialect == "ros2":
+            made = class_of(self.package, self.kind, self.name, self.dialect)
+            for part in (made.Request, made.Response):
+                setattr(module, part.__name__, part)
 
 
-def class_of(package: str, kind: Kind, name: str) -> Any:
-    """The class of a definition, as rospy programs know it; None where there is none. Raises ImportError for a definition
-    that is wrong."""
-    from roslet.compat.messages import adapt
+def class_of(package: str, kind: Kind, name: str, dialect: Dialect = "ros1") -> Any:
+    """The class of a definition, as rospy or rclpy programs know it; None where there is none. Raises ImportError for a
+    definition that is wrong."""
+    if dialect == "ros1":
+        from roslet.compat.messages import adapt
+    else:
+        from roslet.compat.interfaces import adapt
 
     try:
-        return adapt(runtime.interface_class("ros1", f"{package}/{kind}/{name}"))
+        return adapt(runtime.interface_class(dialect, f"{package}/{kind}/{name}"))
     except (UnknownType, InvalidName):
         return None
     except DefinitionError as error:
         raise ImportError(str(error)) from error
 
 
-def install() -> Finder:
-    """Put the finder before all others, once; returns it, for `uninstall`."""
+def install(dialect: Dialect = "ros1") -> Finder:
+    """Put the finder for programs of a dialect before all others, once; returns it, for `uninstall`."""
     for present in sys.meta_path:
-        if isinstance(present, Finder):
+        if isinstance(present, Finder) and present.dialect == dialect:
             return present
-    finder = Finder()
+    finder = Finder(dialect)
     sys.meta_path.insert(0, finder)
     return finder
+
+
+def dialect_of(source: bytes) -> Dialect:
+    """The dialect of a program, by what it imports: rospy and its like, or rclpy; else packages that only ROS 2 has."""
+    import ast
+
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return "ros1"  # the program will say what is wrong with it
+    tops: set[str] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            tops.update(name.name.partition(".")[0] for name in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            tops.add(node.module.partition(".")[0])
+    for dialect in ("ros1", "ros2"):
+        if tops.intersection(OURS[dialect]):
+            return "ros1" if dialect == "ros1" else "ros2"
+    packages = {
+        dialect: {name for name in tops if any(_names(dialect, name, kind) for kind in KINDS[dialect])}
+        for dialect in _DIALECTS
+    }
+    return (
+        "ros2" if packages["ros2"] - packages["ros1"] and not packages["ros1"] - packages["ros2"] else "ros1"
+    )
+
+
+_DIALECTS: tuple[Dialect, ...] = ("ros1", "ros2")
 
 
 def uninstall(finder: Finder) -> None:
@@ -227,4 +294,4 @@ def uninstall(finder: Finder) -> None:
         sys.meta_path.remove(finder)
 
 
-__all__ = ["NOT_HERE", "OURS", "Finder", "class_of", "install", "uninstall"]
+__all__ = ["NOT_HERE", "OURS", "Finder", "class_of", "dialect_of", "install", "uninstall"]

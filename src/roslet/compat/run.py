@@ -1,4 +1,4 @@
-"""`roslet run`: an unmodified rospy program, without ROS."""
+"""`roslet run`: an unmodified rospy or rclpy program, without ROS."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ from roslet.compat import finder
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from roslet.idl.records import Dialect
+
 # Folders above the script in which its package is looked for: pkg/scripts/x.py, pkg/src/pkg/x.py.
 ABOVE = 4
 
@@ -30,9 +32,9 @@ def run(
     """Run `script` as `__main__` with `arguments`; its exit code.
 
     types   packages, workspaces or folders of definitions that come before all others, before those of $ROSLET_TYPES
-            (separated as in $PATH), the script's own package, and $ROS_PACKAGE_PATH
+            (separated as in $PATH), the script's own package, and $ROS_PACKAGE_PATH or $AMENT_PREFIX_PATH
     master  ros1://host:port or http://host:port in place of $ROS_MASTER_URI
-    real    let `import rospy` find an installed rospy
+    real    let `import rospy` or `import rclpy` find an installed one
 
     As with the interpreter itself: an exception that the program does not catch is printed and gives 1, sys.exit what it
     says, a Ctrl-C that it does not catch 130. SIGTERM ends a program as it does under rospy. Whatever the end, the node is
@@ -48,15 +50,16 @@ def run(
             master if ":" in master.partition("://")[2] else master.rstrip("/") + ":11311"
         )
         os.environ["ROS_MASTER_URI"] = f"http://{host}:{port}"
-    _find_definitions(path, types)
-    if not real:
-        finder.install()
     try:
         with open(path, "rb") as file:
             source = file.read()
     except OSError as error:
         print(f"roslet run: cannot read {path}: {error.strerror}", file=sys.stderr)
         return 2
+    dialect = finder.dialect_of(source)
+    _find_definitions(dialect, path, types)
+    if not real:
+        finder.install(dialect)
     if threading.current_thread() is threading.main_thread():
         # As the interpreter starts a program, whatever our caller does with signals.
         signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -66,7 +69,7 @@ def run(
     return code
 
 
-def _find_definitions(path: str, types: Sequence[str | os.PathLike[str]]) -> None:
+def _find_definitions(dialect: Dialect, path: str, types: Sequence[str | os.PathLike[str]]) -> None:
     """Load, the last to come first, the script's own package, $ROSLET_TYPES and `types`."""
     from roslet.errors import DefinitionError
     from roslet.gen.runtime import registry
@@ -74,14 +77,14 @@ def _find_definitions(path: str, types: Sequence[str | os.PathLike[str]]) -> Non
     own = package_of(path)
     if own is not None:
         with contextlib.suppress(DefinitionError):  # a package need not have definitions
-            registry("ros1").load(own)
+            registry(dialect).load(own)
         code = os.path.join(own, "src")
         if os.path.isdir(code) and code not in sys.path:
             # Where catkin_python_setup would have installed the package's modules from.
             sys.path.insert(1, code)
     given = [part for part in os.environ.get("ROSLET_TYPES", "").split(os.pathsep) if part]
     for one in [*given, *types][::-1]:
-        registry("ros1").load(one)
+        registry(dialect).load(one)
 
 
 def package_of(path: str) -> str | None:
@@ -134,6 +137,9 @@ def _end() -> None:
     module = sys.modules.get("roslet.compat.session")
     if module is not None:
         module.session.shut_down("atexit")
+    module = sys.modules.get("roslet.compat.rclpy.context")
+    if module is not None:
+        module.close_all()
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

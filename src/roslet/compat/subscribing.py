@@ -174,7 +174,7 @@ class SubscribedTopic:
                 function(message)
             else:
                 function(message, argument)
-        except Exception:
+        except Exception:  # the program's own code, which may raise anything; rospy logs it and goes on
             if not session.shutting_down.is_set():
                 core.logerr("bad callback: %s\n%s" % (function, traceback.format_exc()))
 

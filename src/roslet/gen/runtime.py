@@ -18,6 +18,7 @@ from roslet.wire.message import (
     Action,
     Message,
     Service,
+    Stamp,
     deserialize_any,
     rescue_read,
     rescue_write,
@@ -34,49 +35,65 @@ if TYPE_CHECKING:
     from roslet.idl import Registry, records
     from roslet.idl.records import Dialect, TypeName
 
-_registries: dict[str, Registry] = {}
-_classes: dict[tuple[str, str], Any] = {}
+
+class _Scope:
+    """Definitions and the classes made of them, by name: the process's of a dialect, or what one peer's text brought."""
+
+    def __init__(self, registry: Registry) -> None:
+        self.registry = registry
+        self.classes: dict[str, Any] = {}
+
+    def message(self, name: TypeName | str) -> type[Message]:
+        key = str(name)
+        made = self.classes.get(key)
+        if made is None:
+            made = self.classes[key] = _message_class(self.registry.message(name), self)
+        return made
+
+
+_scopes: dict[str, _Scope] = {}
+
+
+def _scope(dialect: Dialect) -> _Scope:
+    made = _scopes.get(dialect)
+    if made is None:
+        from roslet.idl import Registry
+
+        made = _scopes[dialect] = _Scope(Registry(dialect))
+    return made
 
 
 def registry(dialect: Dialect) -> Registry:
     """The process's registry of a dialect's definitions, made on first use from the environment."""
-    made = _registries.get(dialect)
-    if made is None:
-        from roslet.idl import Registry
-
-        made = _registries[dialect] = Registry(dialect)
-    return made
+    return _scope(dialect).registry
 
 
 def message_class(dialect: Dialect, name: TypeName | str) -> type[Message]:
     """The class of a message; the same object every time. Raises UnknownType, DefinitionError,
     RecursiveType."""
-    key = (dialect, str(name))
-    made = _classes.get(key)
-    if made is None:
-        message = registry(dialect).message(name)
-        made = _classes[key] = _message_class(message)
-    return made
+    return _scope(dialect).message(name)
 
 
 def service_class(dialect: Dialect, name: TypeName | str) -> type[Service]:
     """The class of a service, with `Request` and `Response`. Raises as `message_class`."""
-    key = (dialect, str(name) + "#srv")
-    made = _classes.get(key)
+    key = str(name) + "#srv"
+    scope = _scope(dialect)
+    made = scope.classes.get(key)
     if made is None:
-        service = registry(dialect).service(name)
-        made = _classes[key] = _named(dialect, service.name, "#srv", lambda: _service_class(service))
+        service = scope.registry.service(name)
+        made = scope.classes[key] = _named(dialect, service.name, "#srv", lambda: _service_class(service))
     return made  # type: ignore[no-any-return]
 
 
 def action_class(dialect: Dialect, name: TypeName | str) -> type[Action]:
     """The class of an action, with `Goal`, `Result`, `Feedback` and what is derived. Raises as
     `message_class`."""
-    key = (dialect, str(name) + "#action")
-    made = _classes.get(key)
+    key = str(name) + "#action"
+    scope = _scope(dialect)
+    made = scope.classes.get(key)
     if made is None:
-        action = registry(dialect).action(name)
-        made = _classes[key] = _named(dialect, action.name, "#action", lambda: _action_class(action))
+        action = scope.registry.action(name)
+        made = scope.classes[key] = _named(dialect, action.name, "#action", lambda: _action_class(action))
     return made  # type: ignore[no-any-return]
 
 
@@ -107,17 +124,30 @@ def for_dialect(dialect: Dialect, kind: Any) -> Any:
 def load(path: str | PathLike[str], dialect: Dialect | None = None) -> Types:
     """Load the definitions at `path` (a package, a workspace or its `src`, a directory of definition files).
 
-    They come before all others of their names in this process, in both dialects; each is parsed when it is
-    asked for. What is returned has the packages as attributes (`types.my_msgs.msg.Foo`), with the classes of
-    `dialect`: by default that of the package's build tool (catkin: ROS 1); where no package.xml names one,
-    ROS 1 if a definition is right in ROS 1 only (`Header`, `time`), else ROS 2. A node takes either's class
-    and uses that of its own network. Raises DefinitionError where there is no definition.
+    They come before all others of their names in this process, for both networks; each is parsed when it is asked for.
+    One definition serves on both: `time`, `duration` and the bare word `Header` of ROS 1 are, on ROS 2, the messages that
+    took their place. What is returned has the packages as attributes (`types.my_msgs.msg.Foo`), with the classes of
+    `dialect`: by default that of the package's build tool (catkin: ROS 1); where no package.xml names one, ROS 2 unless
+    a definition is right in ROS 1 only. A node takes either's class and uses that of its own network. Raises
+    DefinitionError where there is no definition, or none that `dialect`, where it is given, allows.
     """
     names: list[TypeName] = []
+    faults: list[DefinitionError] = []
     both: tuple[Dialect, ...] = ("ros1", "ros2")
     for one in both:
-        names += registry(one).load(path)
-        _forget(one, names)
+        try:
+            found = registry(one).load(path)
+        except (
+            DefinitionError
+        ) as error:  # a package's or a file's name is not legal there, or nothing is there at all
+            if one == dialect:
+                raise
+            faults.append(error)
+            continue
+        names += found
+        _forget(one, found)
+    if not names:
+        raise faults[0]
     names = sorted(set(names))
     return Types(dialect or _guess(str(path), names), names)
 
@@ -126,11 +156,26 @@ def message_class_of(name: str, definition: str) -> type[Message]:
     """The ROS 1 class of a message whose definition a peer sent (`message_definition` in a connection
     header).
 
-    The definition, and those of the nested types with it, come before all others of their names in this
-    process from then on. Raises DefinitionError where the text is wrong or incomplete.
+    The class is a new one each time, and so are those of its nested types: what a peer says of a name changes nothing for
+    others in this process. Raises DefinitionError where the text is wrong, or lacks a type that is not bundled.
     """
-    _forget("ros1", registry("ros1").load_full_text(name, definition))
-    return message_class("ros1", name)
+    from roslet.idl import Registry
+
+    own = Registry("ros1", None)
+    own.load_full_text(name, definition)
+    return _Scope(own).message(name)
+
+
+def described_class(name: str, description: dict[str, Any]) -> type[Message]:
+    """The ROS 2 class of a message that a peer described (`definition_text` says how).
+
+    Like `message_class_of`, it comes before all others of its name. Raises DefinitionError where the description is wrong or
+    incomplete.
+    """
+    from roslet.idl.described import definition_text
+
+    _forget("ros2", registry("ros2").load_full_text(name, definition_text(description)))
+    return message_class("ros2", name)
 
 
 def _guess(path: str, names: list[TypeName]) -> Dialect:
@@ -155,21 +200,22 @@ def _is_right(dialect: Dialect, name: TypeName) -> bool:
 
 def _forget(dialect: Dialect, names: list[TypeName]) -> None:
     """Drop the classes of `names`, and those made of them: a new definition has come before theirs."""
+    classes = _scope(dialect).classes
     gone = {str(name) for name in names}
     while True:
         stale = []
-        for key, made in _classes.items():
-            if key[0] == dialect and key[1] not in gone and any(part in gone for part in _parts_of(made)):
-                stale.append(key[1])
+        for key, made in classes.items():
+            if key not in gone and any(part in gone for part in _parts_of(made)):
+                stale.append(key)
         if not stale:
             break
         gone.update(stale)
     for name in gone:
         for suffix in ("", "#srv", "#action"):
-            _classes.pop((dialect, name + suffix), None)
-    short = [key for key in _classes if key[0] == dialect and key[1].split("#")[0].count("/") == 1]
+            classes.pop(name + suffix, None)
+    short = [key for key in classes if key.split("#")[0].count("/") == 1]
     for key in short:
-        del _classes[key]
+        del classes[key]
 
 
 def _parts_of(made: Any) -> list[str]:
@@ -217,10 +263,11 @@ class Types:
 
 
 def _named(dialect: Dialect, name: TypeName, suffix: str, make: Callable[[], Any]) -> Any:
-    key = (dialect, str(name) + suffix)
-    made = _classes.get(key)
+    classes = _scope(dialect).classes
+    key = str(name) + suffix
+    made = classes.get(key)
     if made is None:
-        made = _classes[key] = make()
+        made = classes[key] = make()
     return made
 
 
@@ -254,16 +301,18 @@ class _Fact:
 class _Builder:
     """What is needed to compile the methods of one class later."""
 
-    def __init__(self, message: records.Message) -> None:
+    def __init__(self, message: records.Message, scope: _Scope) -> None:
         self.message = message
+        self.scope = scope
         self.dialect = message.dialect
         self.made: Layout | None = None
         self.reader: Any = None
 
     def layout(self) -> Layout:
         if self.made is None:
-            resolve = registry(self.dialect).message
-            self.made = layout(self.message, resolve, ROS1 if self.dialect == "ros1" else CDR)
+            self.made = layout(
+                self.message, self.scope.registry.message, ROS1 if self.dialect == "ros1" else CDR
+            )
         return self.made
 
     def compile(self, method: python.Method, name: str) -> Any:
@@ -284,7 +333,7 @@ class _Builder:
             return Time
         if target == "duration":
             return Duration
-        return message_class(self.dialect, target)
+        return self.scope.message(target)
 
     def initialize(self) -> Any:
         return self.compile(python.initializer(self.message), "__init__")
@@ -323,17 +372,17 @@ class _Builder:
     def md5sum(self) -> str:
         from roslet.idl import md5sum
 
-        return md5sum(registry(self.dialect), self.message.name)
+        return md5sum(self.scope.registry, self.message.name)
 
     def full_text(self) -> str:
         from roslet.idl import full_text
 
-        return full_text(registry(self.dialect), self.message.name)
+        return full_text(self.scope.registry, self.message.name)
 
     def type_hash(self) -> str:
         from roslet.idl import type_hash
 
-        return type_hash(registry(self.dialect), self.message.name)
+        return type_hash(self.scope.registry, self.message.name)
 
 
 _PRELUDE: dict[str, Any] = {
@@ -355,18 +404,18 @@ def module_name(dialect: Dialect, name: TypeName) -> str:
     return "roslet.msgs.%s.%s.%s" % (dialect, name.package, name.kind)
 
 
-def _message_class(message: records.Message) -> type[Message]:
+def _message_class(message: records.Message, scope: _Scope) -> type[Message]:
     dialect = message.dialect
     name = message.name
-    known = _classes.get((dialect, str(name)))
+    known = scope.classes.get(str(name))
     if known is not None:
         return known  # type: ignore[no-any-return]
-    builder = _Builder(message)
+    builder = _Builder(message, scope)
     rows = []
     for field in message.fields:
         attribute, base, kind, size, bound = python.field_entry(field)
         if not isinstance(base, str):
-            base = message_class(dialect, base)  # type: ignore[assignment]
+            base = scope.message(base)  # type: ignore[assignment]
         rows.append((attribute, base, kind, size, bound))
     lazy: list[Any] = [
         _Method("__init__", builder.initialize),
@@ -399,10 +448,10 @@ def _message_class(message: records.Message) -> type[Message]:
         body[constant.name] = constant.value
     for part in lazy:
         body[part.name] = part
-    made = type(name.name, (Message,), body)
+    made = type(name.name, (Stamp if python.base(message) == "Stamp" else Message,), body)
     for part in lazy:
         part.owner = made
-    _classes[dialect, str(name)] = made
+    scope.classes[str(name)] = made
     return made
 
 

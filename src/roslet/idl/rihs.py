@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from roslet.idl.registry import Registry
 
 # type_description_interfaces/msg/FieldType: the id of a single value; arrays of it add an offset.
-_NESTED = 1
-_TYPE_IDS = {
+NESTED = 1
+TYPE_IDS = {
     "int8": 2,
     "uint8": 3,
     "int16": 4,
@@ -30,8 +30,8 @@ _TYPE_IDS = {
     "string": 17,
     "wstring": 18,
 }
-_BOUNDED_TYPE_IDS = {"string": 21, "wstring": 22}
-_ARRAY_OFFSETS = {"fixed": 48, "bounded": 96, "unbounded": 144}
+BOUNDED_TYPE_IDS = {"string": 21, "wstring": 22}
+ARRAY_OFFSETS = {"fixed": 48, "bounded": 96, "unbounded": 144}
 
 # IDL has no empty structure; this member stands in a message without fields, on the wire and in the
 # description.
@@ -126,12 +126,12 @@ def _field(field: Field, defaults: bool) -> dict[str, Any]:
 
 def _type_id(type_: FieldType, array: Array | None) -> int:
     if type_.primitive is None:
-        type_id = _NESTED
+        type_id = NESTED
     elif type_.string_bound is not None:
-        type_id = _BOUNDED_TYPE_IDS[type_.primitive]
+        type_id = BOUNDED_TYPE_IDS[type_.primitive]
     else:
-        type_id = _TYPE_IDS["byte" if type_.spelled == "byte" else type_.primitive]
-    return type_id if array is None else type_id + _ARRAY_OFFSETS[array.kind]
+        type_id = TYPE_IDS["byte" if type_.spelled == "byte" else type_.primitive]
+    return type_id if array is None else type_id + ARRAY_OFFSETS[array.kind]
 
 
 def _default_text(value: Value) -> str:

@@ -46,6 +46,7 @@ class Resolver:
         self._found = found
         self._failed = failed
         self._closed = False
+        self._lock = threading.Lock()
         self._timer: Timer | None = None
         self._start()
 
@@ -53,7 +54,7 @@ class Resolver:
         self._timer = None
         if self._left and not self._closed:
             threading.Thread(
-                target=self._run, args=(tuple(self._left),), name="roslet-resolver", daemon=True
+                target=self._run, args=(tuple(self._left),), name="roslet resolver", daemon=True
             ).start()
 
     def _run(self, names: tuple[str, ...]) -> None:
@@ -66,8 +67,10 @@ class Resolver:
                 answers.append((name, tuple(str(row[4][0]) for row in rows[:MAX_ADDRESSES]), ""))
             except (OSError, UnicodeError) as error:
                 answers.append((name, (), str(error)))
-        if not self._closed:
-            self._reactor.call_soon(lambda: self._answered(answers))
+        with self._lock:
+            # Once we are closed the reactor may be, too.
+            if not self._closed:
+                self._reactor.call_soon(lambda: self._answered(answers))
 
     def _answered(self, answers: list[tuple[str, tuple[str, ...], str]]) -> None:
         if self._closed:
@@ -84,6 +87,11 @@ class Resolver:
 
     def close(self) -> None:
         """No more calls. A name that is being asked for ends in its thread, unheard."""
-        self._closed = True
+        with self._lock:
+            self._closed = True
         if self._timer is not None:
             self._timer.cancel()
+
+    def abandon(self) -> None:
+        """In a forked child, which has no such thread; its lock may be held for ever."""
+        self._closed = True

@@ -12,12 +12,14 @@ import socket
 import struct
 import sys
 import time
+from time import monotonic
 
 from roslet.engine.rtps.limits import Limits
 from roslet.engine.rtps.participant import Participant
 from roslet.engine.rtps.writer import HEARTBEAT_DELAY
 from roslet.errors import Unreachable
 from roslet.io.interfaces import LOOPBACK, Interface, Watch, choose, interfaces, require
+from roslet.io.memory import keep_large_blocks
 from roslet.io.resolver import AGAIN, Resolver, literal
 from roslet.names import OFF, SUBNET, SYSTEM_DEFAULT, Ros2Network
 from roslet.wire.rtps import locator
@@ -44,8 +46,12 @@ SETTLE = 0.2
 RESCAN = 5.0
 # Octets of the kernel's receive buffer; it grants less where net.core.rmem_max says so.
 RECEIVE_BUFFER = 4 << 20
+# Addresses of which it is remembered how they are reached.
+MAX_WAYS = 4096
 # Datagrams read in one go before others get their turn.
 BATCH = 64
+# Octets of a datagram that is likely a part of a large message: their memory is worth keeping.
+LARGE = 32 << 10
 _IP_MULTICAST_ALL = 49  # linux/in.h
 
 
@@ -101,6 +107,7 @@ class Domain:
         # By number and address of an interface: the socket for what goes to groups there. `_senders` are the same.
         self._joined: dict[tuple[int, str], socket.socket] = {}
         self._senders: list[socket.socket] = []
+        self._ways: dict[Address, Sequence[socket.socket]] = {}
         self._resolved: dict[str, tuple[str, ...]] = {
             host: (host,) for host, _ in network.peers if literal(host)
         }
@@ -158,6 +165,7 @@ class Domain:
                 except OSError as error:
                     self._failed("join", error)  # it has just gone; the watch will say so
         self._senders = list(self._joined.values())
+        self._ways = {}
 
     def _membership(self, option: int, number: int, address: str) -> bool:
         """Join or leave the group on one interface; whether that worked."""
@@ -317,11 +325,17 @@ class Domain:
     def _reader_of(self, one: socket.socket) -> Callable[[int], None]:
         receive = one.recvfrom_into
         buffer, view = self._buffer, self._view
+        # How many are read before the loop looks again: one by one while they come one by one, for a look in vain costs as
+        # much as reading; more while they come faster.
+        batch = 1
 
         def readable(_: int) -> None:
+            nonlocal batch
             participant = self.participant
-            now = self.reactor.now()
-            for _ in range(BATCH):
+            take = participant.receive_datagram
+            now = monotonic()
+            count = 0
+            while count < batch:
                 try:
                     size, source = receive(buffer)
                 except BlockingIOError:
@@ -329,11 +343,17 @@ class Domain:
                 except OSError as error:
                     # An ICMP error for something sent earlier; the socket goes on.
                     self._failed("receive", error)
-                    continue
-                participant.receive_datagram(view[:size], source, now)
-                self._tell()
-                if self._closed:
-                    return
+                    size = 0
+                count += 1
+                if size:
+                    take(view[:size], source, now)
+                    if participant.pending_events:
+                        self._tell()
+                    if self._closed:
+                        return
+                    if size >= LARGE:
+                        keep_large_blocks()
+            batch = min(2 * batch, BATCH) if count == batch else max(count, 1)
             self.flush()
 
         return readable
@@ -346,12 +366,13 @@ class Domain:
         """Do what is due, send what is pending, and wake up in time for the rest. Call it with the reactor's lock held."""
         if self._closed:
             return
-        now = self.reactor.now()
+        now = monotonic()
         participant = self.participant
         participant.handle_deadline(now)
         for parts, addresses in participant.datagrams_to_send(now):
             self._send(parts, addresses)
-        self._tell()
+        if participant.pending_events:
+            self._tell()
         at = participant.deadline()
         if at is None:
             return
@@ -368,9 +389,10 @@ class Domain:
         if self._timer is None or self._armed > now + HEARTBEAT_DELAY or self._closed:
             self.flush()
             return
-        for parts, addresses in self.participant.datagrams_to_send(now):
+        outbox = self.participant.outbox
+        for parts, addresses in outbox.take(now):
             self._send(parts, addresses)
-        if self.participant.outbox.deadline() is not None:
+        if outbox.deadline() is not None:
             self.flush()
 
     def _due(self) -> None:
@@ -379,13 +401,24 @@ class Domain:
 
     def _send(self, parts: Any, addresses: Sequence[Address]) -> None:
         for address in addresses:
-            senders = self._senders if address[0] == GROUP else [self._user]
+            senders = self._ways.get(address) or self._way(address)
             for sender in senders:
                 try:
-                    sender.sendmsg(parts, [], 0, address)
+                    if len(parts) == 1:
+                        sender.sendto(parts[0], address)
+                    else:
+                        sender.sendmsg(parts, [], 0, address)
                 except OSError as error:
                     # As good as lost on the way; reliable writers send it again.
                     self._failed("send", error)
+
+    def _way(self, address: Address) -> Sequence[socket.socket]:
+        """The sockets that reach an address: the user socket, or one for each interface where it is a group."""
+        if len(self._ways) >= MAX_WAYS:
+            self._ways.clear()
+        first = int(address[0].partition(".")[0])
+        self._ways[address] = found = self._senders if 224 <= first < 240 else (self._user,)
+        return found
 
     def close(self) -> None:
         """Depart and close the sockets."""
@@ -414,6 +447,7 @@ class Domain:
     def abandon(self) -> None:
         """In a forked child: close the parent's sockets, and touch nothing else."""
         self._closed = True
-        for one in (self._meta, self._user, self._group, *self._senders):
+        self._resolver.abandon()
+        for one in (self._meta, self._user, self._group, self._watch, *self._senders):
             if one is not None:
                 one.close()

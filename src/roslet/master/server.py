@@ -13,6 +13,7 @@ import socket
 import sys
 import threading
 import uuid
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
 from roslet.engine.ros1.rpc import CallFailed, RpcClient, RpcServer, answer_calls
@@ -24,6 +25,9 @@ from roslet.master.core import Master, Notification
 from roslet.names import parse_host_port
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+    from contextlib import AbstractContextManager
+
     from roslet.io.select import Reactor
 
 DEFAULT_PORT = 11311
@@ -294,11 +298,16 @@ def _advertised(host: str) -> str:
     return host if host not in ("", "0.0.0.0") else socket.gethostname()
 
 
-def run(host: str = "0.0.0.0", port: int = DEFAULT_PORT) -> int:
+def run(
+    host: str = "0.0.0.0",
+    port: int = DEFAULT_PORT,
+    beside: Callable[[MasterServer], AbstractContextManager[object]] | None = None,
+) -> int:
     """Be a master until Ctrl-C, SIGTERM or a client's shutdown call; what `roslet master` does. Returns the
     exit code.
 
-    Sets /run_id, which roslaunch compares with its own.
+    Sets /run_id, which roslaunch compares with its own. `beside(server)` is entered once the master listens, and left
+    before it ends.
     """
     loop = reactor()
     try:
@@ -311,8 +320,9 @@ def run(host: str = "0.0.0.0", port: int = DEFAULT_PORT) -> int:
     # As Ctrl-C: a handler that only set a flag would not end the loop's sleep.
     previous = signal.signal(signal.SIGTERM, on_sigint)
     try:
-        print(f"ROS_MASTER_URI={server.uri}", flush=True)
-        loop.run_until(server.stopped.is_set)
+        with nullcontext() if beside is None else beside(server):
+            print(f"ROS_MASTER_URI={server.uri}", flush=True)
+            loop.run_until(server.stopped.is_set)
     except KeyboardInterrupt:
         pass
     finally:

@@ -29,6 +29,13 @@ class Clock:
         for timer in self._timers:
             timer._to_simulated()
 
+    def wall(self) -> None:
+        """From now on the wall clock does again."""
+        self.simulated = False
+        self._nanoseconds = 0
+        for timer in self._timers:
+            timer._to_wall()
+
     def close(self) -> None:
         """No timer calls any more."""
         for timer in list(self._timers):
@@ -98,6 +105,10 @@ class Timer:
             self._alarm.cancel()
             self._alarm = None
         self._due = self._clock.seconds() + self.period
+
+    def _to_wall(self) -> None:
+        self._next = self._clock.reactor.now() + self.period
+        self._alarm = self._clock.reactor.call_at(self._next, self._fire, user=True)
 
     def _clock_moved(self) -> None:
         now = self._clock.seconds()

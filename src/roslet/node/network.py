@@ -158,16 +158,17 @@ def make(
     return Ros2Network(node, name, network, namespace, arguments, anonymous, environment)
 
 
-def own_classes(dialect: Any, kind: Any, services: bool = False) -> Any:
-    """The class of a message or service type given by name or class; of a class of the other dialect the one of the same
-    name. Raises Unsupported where `kind` is neither, UnknownType."""
+def own_classes(dialect: Any, kind: Any, what: str = "message") -> Any:
+    """The class of a type given by name or class; of a class of the other dialect the one of the same name. `what` is
+    "message", "service" or "action". Raises Unsupported where `kind` is no such class, UnknownType."""
     from roslet.gen import runtime
 
     if isinstance(kind, str):
-        return (runtime.service_class if services else runtime.message_class)(dialect, kind)
-    known = hasattr(kind, "Request") if services else hasattr(kind, "_spec") or hasattr(kind, "_md5sum")
-    if not known or not hasattr(kind, "_md5sum"):
-        raise Unsupported(f"{kind!r} is no {'service' if services else 'message'} class")
+        find: Any = getattr(runtime, what + "_class")
+        return find(dialect, kind)
+    marks = {"message": ("_spec", "_md5sum"), "service": ("Request",), "action": ("Goal",)}[what]
+    if not any(hasattr(kind, mark) for mark in marks) or not hasattr(kind, "_md5sum"):
+        raise Unsupported(f"{kind!r} is no {what} class")
     if dialect == "ros1" and kind._md5sum:
         return kind
     return runtime.for_dialect(dialect, kind)

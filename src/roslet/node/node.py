@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self
 
+    from roslet.node.ros2.actions import ActionClient, ActionServer, ServerGoal
     from roslet.node.services import Client, Service
     from roslet.node.topics import Publisher, Subscription
     from roslet.wire.time import Time
@@ -51,6 +52,10 @@ class Node(GraphApi):
 
     Raises InvalidName, Unsupported, OSError or Unreachable where no port can be had.
     """
+
+    # Whether the node has on ROS 2 what every node has: its log, its parameters' services and events, descriptions of its
+    # types. One that only looks, such as a command's, costs its peers less without.
+    _seen = True
 
     def __init__(
         self,
@@ -130,6 +135,31 @@ class Node(GraphApi):
         """A client of the service `name`, which need not be there yet. `persistent`: on ROS 1, keep the connection."""
         self._check_open()
         return self._network.client(self._network.resolve_service(name), type, persistent)
+
+    # -- actions
+
+    def action_server(
+        self,
+        name: str,
+        type: Any,  # noqa: A002
+        handler: Callable[[ServerGoal], Any] | None = None,
+        *,
+        accepted: Callable[[ServerGoal], object] | None = None,
+        on_goal: Callable[[Any], object] | None = None,
+        on_cancel: Callable[[ServerGoal], object] | None = None,
+        result_timeout: float | None = 10.0,
+    ) -> ActionServer:
+        """ROS 2: serve the action `name`; see `ActionServer` for what is called when."""
+        self._check_open()
+        network = self._ros2("action_server")
+        full = network.resolve_service(name)
+        return network.action_server(full, type, handler, accepted, on_goal, on_cancel, result_timeout)
+
+    def action_client(self, name: str, type: Any) -> ActionClient:  # noqa: A002
+        """ROS 2: a client of the action `name`, which need not be there yet."""
+        self._check_open()
+        network = self._ros2("action_client")
+        return network.action_client(network.resolve_service(name), type)
 
     # -- time
 

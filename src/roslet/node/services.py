@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from roslet.errors import CallTimeout, NodeClosed, ServiceFailed
+from roslet.node.convert import message_of
+from roslet.node.future import Future
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -11,14 +13,14 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self
 
-    from roslet.node.future import Future
     from roslet.node.node import Node
 
 
 class Service:
     """Offers a service. Made by `Node.service`. The handler runs inside spin, one request at a time.
 
-    `handler(request)` returns a response, a dict of its fields, or None for an empty response. What it raises is logged
+    `handler(request)` returns a response, a dict of its fields, None for an empty response, or a Future of any of these,
+    which is answered when it is done. What it raises is logged
     and, on ROS 1, goes to the caller as the text of its ServiceFailed; ROS 2 has no such answer, so there the caller gets
     none.
     """
@@ -31,8 +33,9 @@ class Service:
         self._handler: Callable[..., Any] = handler
         self._with_link = False
 
-    def _answer(self, view: memoryview, link: Any) -> bytes:
-        """The response to a request. `view` is the handler's to keep. Raises ServiceFailed."""
+    def _answer(self, view: memoryview, link: Any) -> bytes | Future[Any]:
+        """The response to a request, or a Future of what `_serialize` takes. `view` is the handler's to keep. Raises
+        ServiceFailed."""
         self.calls += 1
         try:
             request = self.type.Request.deserialize_from(view, 0, len(view))
@@ -43,25 +46,28 @@ class Service:
             raise ServiceFailed(f"{self.name}: malformed request: {error}") from None
         try:
             response = self._handler(request, link) if self._with_link else self._handler(request)
-            return self._serialize(response)
+            return response if isinstance(response, Future) else self._serialize(response)
         except Exception as error:
-            if not isinstance(error, ServiceFailed):
-                self.node._count("handler-raised")
-                self.node.log.error(f"{self.name}: the handler raised {type(error).__name__}: {error}")
-            text = str(error) or type(error).__name__
-            raise ServiceFailed(text.encode("utf-8", "replace").decode()) from None
+            raise self._failure(error) from None
+
+    def _answer_of(self, future: Future[Any]) -> bytes:
+        """The response that a handler promised. Raises ServiceFailed."""
+        try:
+            return self._serialize(future.result(0))
+        except Exception as error:
+            raise self._failure(error) from None
+
+    def _failure(self, error: Exception) -> ServiceFailed:
+        if not isinstance(error, ServiceFailed):
+            self.node._count("handler-raised")
+            self.node.log.error(f"{self.name}: the handler raised {type(error).__name__}: {error}")
+        text = str(error) or type(error).__name__
+        return ServiceFailed(text.encode("utf-8", "replace").decode())
 
     def _serialize(self, response: Any) -> bytes:
         kind = self.type.Response
-        if response is None:
-            response = kind()
-        elif isinstance(response, dict):
-            response = kind(**response)
-        elif not isinstance(response, kind):
-            raise TypeError(
-                f"{self.name}: the handler returned {type(response).__name__}, not {kind.__name__}"
-            )
-        return bytes(response.serialize())
+        made = kind() if response is None else message_of(kind, response, f"{self.name}: a response is")
+        return bytes(made.serialize())
 
     def close(self) -> None:
         """Withdraw the service. Closing twice is allowed."""
@@ -107,13 +113,8 @@ class Client:
             raise NodeClosed(f"the client of {self.name} is closed")
         self.node._check_open()
         kind = self.type.Request
-        if request is None:
-            request = kind(**fields)
-        elif isinstance(request, dict):
-            request = kind(**request)
-        elif not isinstance(request, kind):
-            raise TypeError(f"{self.name} takes {kind.__name__}, not {type(request).__name__}")
-        return bytes(request.serialize()), self.node._future(f"service {self.name}")
+        made = kind(**fields) if request is None else message_of(kind, request, f"{self.name} takes")
+        return bytes(made.serialize()), self.node._future(f"service {self.name}")
 
     def _end(self, future: Future[Any], body: Any) -> None:
         """The bytes of the response are there."""

@@ -74,6 +74,7 @@ class DateTime:
 
 # -- emitting
 
+_I8 = "<value><i8>"
 _CALL = '<?xml version="1.0"?>\n<methodCall><methodName>%s</methodName><params>'
 _RESPONSE = '<?xml version="1.0"?>\n<methodResponse><params><param>'
 _FAULT = '<?xml version="1.0"?>\n<methodResponse><fault>'
@@ -82,19 +83,33 @@ _SPACES = (b" ", b"\t", b"\r", b"\n")
 
 
 def emit_call(method: str, params: "list[Any] | tuple[Any, ...]") -> bytes:
-    """The document that calls `method`. Raises InvalidMessage for a value that cannot be sent."""
+    """The document that calls `method`. Raises InvalidMessage for a value that cannot be sent.
+
+    No parameter is set to an integer of more than 32 bits: rosmaster would take it, and fail from then on whoever asks for
+    it or for a namespace that it is in; roscpp could not read it.
+    """
     out = [_CALL % escape(method)]
     index = 0
     try:
         for value in params:
             out.append("<param>")
+            begin = len(out)
             _emit(value, out, 0)
+            if method == "setParam":
+                _check_narrow(out[begin:])
             out.append("</param>")
             index += 1
     except InvalidMessage as error:
         raise _within("params[%d]" % index, error) from None
     out.append("</params></methodCall>")
     return _encode(out)
+
+
+def _check_narrow(pieces: "list[str]") -> None:
+    for piece in pieces:
+        if piece.startswith(_I8):
+            number = piece[len(_I8) : piece.find("</")]
+            raise InvalidMessage("a parameter cannot be %s, an integer of more than 32 bits" % number)
 
 
 def emit_response(value: "Any") -> bytes:
@@ -142,7 +157,7 @@ def _emit(value: "Any", out: "list[str]", depth: int) -> None:
         if -0x80000000 <= value <= 0x7FFFFFFF:
             out.append("<value><i4>%d</i4></value>" % value)
         elif -0x8000000000000000 <= value <= 0x7FFFFFFFFFFFFFFF:
-            out.append("<value><i8>%d</i8></value>" % value)
+            out.append(_I8 + "%d</i8></value>" % value)
         else:
             raise InvalidMessage("an integer of more than 64 bits cannot be sent")
     elif kind is float:

@@ -16,7 +16,7 @@ ELSEWHERE = {"http-status", "bad-reply", "header-too-long"}
 def used() -> set[str]:
     """Reasons by the places that count them or raise them to be counted."""
     found: set[str] = set()
-    for folder in ("engine/ros1", "io", "node"):
+    for folder in ("engine/ros1", "io", "node", "node/ros1"):
         for path in (SOURCE / folder).glob("*.py"):
             if path.name == "reasons.py":
                 continue

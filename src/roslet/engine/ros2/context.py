@@ -85,7 +85,9 @@ class Context:
         self._old_writer: Writer | None = None  # for those up to Humble, once one is seen
         self._reader: Reader | None = None
         self._watchers: dict[bytes, Callable[[Any, float], None]] = {}
-        self._timed: list[Any] = []  # service servers: what has deadline() and handle_deadline(now)
+        self.timed: list[
+            Any
+        ] = []  # machines of this package that wait: with deadline() and handle_deadline(now)
 
     # -- what a runtime does
 
@@ -115,7 +117,7 @@ class Context:
     def deadline(self) -> "float | None":
         """When `handle_deadline` has something to do, or None."""
         found = self._publish_at
-        for one in self._timed:
+        for one in self.timed:
             at = one.deadline()
             if at is not None and (found is None or at < found):
                 found = at
@@ -125,7 +127,7 @@ class Context:
         """Tell what changed, once it has waited for others; give up replies that nobody can be given."""
         if self._publish_at is not None and now >= self._publish_at:
             self.flush(now)
-        for one in self._timed:
+        for one in list(self.timed):
             one.handle_deadline(now)
 
     def flush(self, now: float) -> None:
@@ -232,19 +234,10 @@ class Context:
         remote = self.participant.spdp.remotes.get(guid[:12])
         return remote.data.vendor_id if remote is not None else VENDORID_UNKNOWN
 
-    def watch(
-        self, entity_id: bytes, function: "Callable[[Any, float], None] | None", timed: "Any" = None
-    ) -> None:
-        """Call `function(event, now)` for the matches of our endpoint, or no more where None; `timed` shares our
-        deadline. For the machines of this package."""
-        if function is None:
-            self._watchers.pop(entity_id, None)
-            if timed is not None and timed in self._timed:
-                self._timed.remove(timed)
-            return
+    def watch(self, entity_id: bytes, function: "Callable[[Any, float], None]") -> None:
+        """Call `function(event, now)` for the matches of our endpoint, as long as that is there. For the machines of this
+        package."""
         self._watchers[entity_id] = function
-        if timed is not None:
-            self._timed.append(timed)
 
     def _room(self, node: int) -> _Node:
         found = self._nodes.get(node)

@@ -5,7 +5,7 @@ is, with `channel` "".
 """
 
 from roslet.engine.ros2.user_data import value_of
-from roslet.names import REPLY, REQUEST, TOPIC, ros_service_type, ros_topic, ros_type
+from roslet.names import REPLY, REQUEST, TOPIC, dds_topic, ros_service_type, ros_topic, ros_type
 from roslet.record import Record
 
 TYPE_CHECKING = False
@@ -177,12 +177,27 @@ class Graph:
 
     # -- what it answers
 
+    def complete(self) -> bool:
+        """Whether every participant of ROS has told of its nodes, and every endpoint that it told of is known: nothing is
+        known to be missing."""
+        for participant in self._participants.values():
+            if participant.enclave is not None and not participant.told:
+                return False
+            for guid in participant.owners:
+                if guid not in self._endpoints:
+                    return False
+        return True
+
     def nodes(self) -> "list[NodeInfo]":
         """Every node that its participant has told of, ours included."""
         found: list[NodeInfo] = []
         for participant in self._participants.values():
             found += participant.nodes
         return found
+
+    def endpoint_data(self) -> "list[EndpointData]":
+        """Every endpoint as discovery announced it, those that are not of ROS too."""
+        return [one.data for one in self._endpoints.values()]
 
     def endpoints(
         self,
@@ -196,7 +211,10 @@ class Graph:
         `channel` TOPIC, REQUEST or REPLY, "" for those that are not of ROS, None for all.
         """
         found = []
-        for one in self._endpoints.values():
+        among = self._endpoints
+        if topic is not None and channel is not None:
+            among = self._by_topic.get(dds_topic(channel, topic) if channel else topic, {})
+        for one in among.values():
             if topic is not None and one.name != topic:
                 continue
             if channel is not None and one.channel != channel:

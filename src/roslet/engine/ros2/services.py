@@ -194,7 +194,7 @@ class ServiceServer(_Machine):
         self._waiting: list[_Waiting] = []
         self._waiting_bytes = 0
         _Machine.__init__(self, context, node, name, type_name, qos, now, hashes, sink, True)
-        context.watch(self.writer.entity_id, self._matched, self)
+        context.watch(self.writer.entity_id, self._matched)
 
     def request(self, proxy: "WriterProxy", value: "Data", time: "int | None" = None) -> "Request | None":
         """The request in a sample of our reader, or None where it is none, which is counted. Of HEADER the payload is a
@@ -226,8 +226,7 @@ class ServiceServer(_Machine):
         if len(self._waiting) >= MAX_WAITING or self._waiting_bytes + len(payload) > MAX_WAITING_BYTES:
             self._count("replies-waiting-full")
             return False
-        self._waiting.append(_Waiting(request, bytes(payload), now + PATIENCE))
-        self._waiting_bytes += len(payload)
+        self._wait(self._waiting + [_Waiting(request, bytes(payload), now + PATIENCE)])  # noqa: RUF005 - for MicroPython
         return False
 
     def deadline(self) -> "float | None":
@@ -236,14 +235,14 @@ class ServiceServer(_Machine):
 
     def handle_deadline(self, now: float) -> None:
         """Give up what has waited long enough. The Context calls it."""
-        while self._waiting and self._waiting[0].until <= now:
-            self._waiting_bytes -= len(self._waiting.pop(0).payload)
+        left = [one for one in self._waiting if one.until > now]
+        for _ in range(len(self._waiting) - len(left)):
             self._count("reply-reader-unmatched")
+        self._wait(left)
 
     def close(self, now: float) -> None:
         """Withdraw reader and writer; what waits is dropped."""
-        self._context.watch(self.writer.entity_id, None, self)
-        self._waiting = []
+        self._wait([])
         _Machine.close(self, now)
 
     def _matched(self, event: "Any", now: float) -> None:
@@ -255,8 +254,17 @@ class ServiceServer(_Machine):
                 sent = False
             if not sent:
                 left.append(one)
-        self._waiting = left
-        self._waiting_bytes = sum([len(one.payload) for one in left])
+        self._wait(left)
+
+    def _wait(self, waiting: "list[_Waiting]") -> None:
+        """What waits from now on. Only who waits is looked after by the Context."""
+        timed = self._context.timed
+        if waiting and not self._waiting:
+            timed.append(self)
+        elif self._waiting and not waiting:
+            timed.remove(self)
+        self._waiting = waiting
+        self._waiting_bytes = sum([len(one.payload) for one in waiting])
 
     def _send(self, request: Request, payload: "View", now: float) -> bool:
         readers = self._readers_of(request)

@@ -123,8 +123,47 @@ class SamplesLost(Record):
         self.count = count
 
 
+class SampleRejected(Record):
+    """Our reader `local` has no room for another instance: the sample is not acknowledged, its writer will try again."""
+
+    _fields = ("local", "writer", "key")
+    __slots__ = _fields
+
+    def __init__(self, local: bytes, writer: bytes, key: bytes) -> None:
+        self.local = local
+        self.writer = writer
+        self.key = key
+
+
+class InstanceChanged(Record):
+    """Instance `key` of a keyed topic is in another `state` (instances.STATES) for our reader `local`, by what `writer` did.
+
+    Told before the sample itself is handed over.
+    """
+
+    _fields = ("local", "key", "state", "writer")
+    __slots__ = _fields
+
+    def __init__(self, local: bytes, key: bytes, state: int, writer: bytes) -> None:
+        self.local = local
+        self.key = key
+        self.state = state
+        self.writer = writer
+
+
+class WriterReady(Record):
+    """Our writer `local`, which was `full`, has room again."""
+
+    _fields = ("local",)
+    __slots__ = _fields
+
+    def __init__(self, local: bytes) -> None:
+        self.local = local
+
+
 class LivelinessLost(Record):
-    """A matched writer was not asserted within its liveliness lease."""
+    """A matched writer was not asserted within its liveliness lease. Of our own writer (`local` is its entity id, `writer`
+    its GUID): it was not asserted by its owner."""
 
     _fields = ("local", "writer")
     __slots__ = _fields
@@ -135,7 +174,7 @@ class LivelinessLost(Record):
 
 
 class LivelinessRegained(Record):
-    """A writer whose liveliness was lost has been heard again."""
+    """A writer whose liveliness was lost has been heard again, or asserted again if it is ours."""
 
     _fields = ("local", "writer")
     __slots__ = _fields
@@ -146,13 +185,15 @@ class LivelinessRegained(Record):
 
 
 class DeadlineMissed(Record):
-    """Our endpoint `local` did not write, or did not get, a sample within the period of its DEADLINE.
+    """Our endpoint `local` did not write, or did not get, a sample within the period of its DEADLINE; of a keyed topic,
+    one of instance `key`.
 
-    Told anew each period, from the first sample on. For topics without a key.
+    Told anew each period, from the first sample on.
     """
 
-    _fields = ("local",)
+    _fields = ("local", "key")
     __slots__ = _fields
 
-    def __init__(self, local: bytes) -> None:
+    def __init__(self, local: bytes, key: bytes = b"") -> None:
         self.local = local
+        self.key = key

@@ -9,10 +9,30 @@ if TYPE_CHECKING:
 
 
 class Budget:
-    """Octets that all assemblies of a participant share."""
+    """Octets that all peers share; no participant takes more than `share` of them."""
 
-    def __init__(self, size: int) -> None:
+    def __init__(self, size: int, share: int) -> None:
         self.left = size
+        self.share = share
+        self._taken: dict[bytes, int] = {}
+
+    def take(self, prefix: bytes, size: int) -> bool:
+        """For this participant; false where that is too much."""
+        taken = self._taken.get(prefix, 0) + size
+        if size > self.left or taken > self.share:
+            return False
+        self.left -= size
+        self._taken[prefix] = taken
+        return True
+
+    def give(self, prefix: bytes, size: int) -> None:
+        """Back."""
+        self.left += size
+        taken = self._taken[prefix] - size
+        if taken:
+            self._taken[prefix] = taken
+        else:
+            del self._taken[prefix]
 
 
 class Assembly:
@@ -25,6 +45,7 @@ class Assembly:
         self.data = bytearray(self.size)
         self.have = bytearray(self.count)
         self.left = self.count
+        self.asked = False  # whether the writer wants to hear how far we are
         self.told = 0  # the writer said to have sent the fragments up to this one
         self.lowest = 0  # no fragment below this is missing
         self.inline_qos = bytes(fragment.inline_qos)

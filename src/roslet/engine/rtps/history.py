@@ -8,14 +8,14 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from roslet.wire.rtps.qos import Qos
 
-# Samples of a KEEP_ALL writer without resource limits of its own, and octets of any writer: readers that do not
-# acknowledge must not take the machine's memory.
+# Samples of a KEEP_ALL writer without resource limits of its own: readers that do not acknowledge must not take the
+# machine's memory.
 DEFAULT_SAMPLES = 4096
 DEFAULT_BYTES = 256 << 20
 
 
 class HistoryFull(RosletError):
-    """A KEEP_ALL writer has reached its limit, and its readers have yet to acknowledge."""
+    """A writer has reached a limit, and its readers have yet to acknowledge; or it has no room for another instance."""
 
 
 class Change:
@@ -45,46 +45,69 @@ class Change:
 
 
 class History:
-    """Changes in order. KEEP_LAST drops the oldest of an instance beyond the depth; KEEP_ALL is full at its limits."""
+    """Changes in order. KEEP_LAST drops the oldest of an instance beyond the depth, and the oldest of all beyond
+    max_samples; KEEP_ALL is full at its limits. Neither has more than max_instances."""
 
-    def __init__(self, qos: "Qos", max_bytes: int = DEFAULT_BYTES) -> None:
+    def __init__(
+        self, qos: "Qos", max_bytes: int = DEFAULT_BYTES, max_instances: int = DEFAULT_SAMPLES
+    ) -> None:
         kind, depth = qos.history
-        limit = qos.resource_limits[0]
+        samples, instances, an_instance = qos.resource_limits
         self.keep_all = kind == KEEP_ALL
         self.depth = max(depth, 1)
-        self.max_samples = limit if limit > 0 else DEFAULT_SAMPLES
+        if an_instance > 0:
+            self.depth = min(self.depth, an_instance)
+        self.max_samples = samples if samples > 0 else DEFAULT_SAMPLES
+        self.max_instances = instances if instances > 0 else max_instances
+        self.max_an_instance = an_instance if an_instance > 0 else self.max_samples
         self.max_bytes = max_bytes
         self.bytes = 0
         self._changes: dict[int, Change] = {}
         self._instances: dict[bytes, list[int]] = {}
+        self._counts = an_instance > 0  # whether KEEP_ALL must know how many an instance has
         self._first = 1  # no change below this is held
+        self._ended = 0  # ends of instances among the changes
 
     def __len__(self) -> int:
         return len(self._changes)
 
-    def full(self, size: int) -> bool:
-        """Whether a sample of `size` octets must wait."""
+    def full(self, size: int, key: bytes = b"") -> bool:
+        """Whether a sample of `size` octets of instance `key` must wait."""
         if not self._changes:
             return False
-        over = self.bytes + size > self.max_bytes
-        return self.keep_all and (over or len(self._changes) >= self.max_samples)
+        if key and key not in self._instances and len(self._instances) >= self.max_instances:
+            return True
+        if not self.keep_all:
+            return False
+        if self._counts and len(self._instances.get(key, ())) >= self.max_an_instance:
+            return True
+        return self.bytes + size > self.max_bytes or len(self._changes) >= self.max_samples
 
     def add(self, change: Change) -> None:
         """Keep it, and drop what KEEP_LAST no longer keeps. Raises HistoryFull."""
-        if self.full(len(change.payload)):
+        size = len(change.payload)
+        if self.full(size, change.key):
             raise HistoryFull(
                 "%d samples, %d bytes are not yet acknowledged" % (len(self._changes), self.bytes)
             )
         if not self._changes:
             self._first = change.sequence
         self._changes[change.sequence] = change
-        self.bytes += len(change.payload)
+        self.bytes += size
+        if not change.flags & FLAG_D:
+            self._ended += 1
+        if self.keep_all and not self._counts and not change.key:
+            return
+        numbers = self._instances.get(change.key)
+        if numbers is None:
+            numbers = self._instances[change.key] = []
+        numbers.append(change.sequence)
         if not self.keep_all:
-            numbers = self._instances.setdefault(change.key, [])
-            numbers.append(change.sequence)
             if len(numbers) > self.depth:
                 self.remove(numbers[0])
-            while self.bytes > self.max_bytes and len(self._changes) > 1:
+            while (self.bytes > self.max_bytes or len(self._changes) > self.max_samples) and len(
+                self._changes
+            ) > 1:
                 self.remove(self.first(0))
 
     def get(self, sequence: int) -> "Change | None":
@@ -96,6 +119,8 @@ class History:
         if change is None:
             return
         self.bytes -= len(change.payload)
+        if not change.flags & FLAG_D:
+            self._ended -= 1
         numbers = self._instances.get(change.key)
         if numbers is not None:
             numbers.remove(sequence)
@@ -104,11 +129,8 @@ class History:
 
     def remove_through(self, sequence: int) -> None:
         """Forget every change up to `sequence`."""
-        while self._changes:
-            first = self.first(0)
-            if first > sequence:
-                break
-            self.remove(first)
+        while self._changes and self.first(0) <= sequence:
+            self.remove(self._first)
 
     def forget_expired(self, now: float) -> None:
         """Forget the oldest changes whose time is over."""
@@ -120,6 +142,8 @@ class History:
 
     def forget_ended(self, sequence: int) -> None:
         """Forget the ends of instances up to `sequence`."""
+        if not self._ended:
+            return
         ended = [
             one.sequence
             for one in self._changes.values()
@@ -130,9 +154,9 @@ class History:
 
     def first(self, otherwise: int) -> int:
         """The lowest number held, or `otherwise`."""
-        if not self._changes:
-            return otherwise
         changes = self._changes
+        if not changes:
+            return otherwise
         # Numbers only grow, so this walks over each gap once.
         while self._first not in changes:
             self._first += 1

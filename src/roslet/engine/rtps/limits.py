@@ -14,6 +14,12 @@ class Limits(Record):
     sample_bytes   largest sample taken from fragments
     assembly_bytes octets of all samples that are being put together, over all writers
     events         events that wait for `next_event`; samples beyond are dropped
+    all_held_bytes octets as in held_bytes, over all writers
+    peer_bytes     of assembly_bytes, and of all_held_bytes, what the writers of one participant may take: a quarter, so
+                   that one that is up to no good, or out of its depth, leaves room for the others
+    history_bytes  octets of samples that one of our writers keeps for its readers; KEEP_LAST then drops the oldest
+    backlog_bytes  octets that one of our KEEP_ALL writers keeps for readers that have yet to acknowledge them
+    instances      instances of a keyed topic that one reader or writer knows at once
     """
 
     _fields = (
@@ -25,6 +31,11 @@ class Limits(Record):
         "sample_bytes",
         "assembly_bytes",
         "events",
+        "all_held_bytes",
+        "peer_bytes",
+        "history_bytes",
+        "backlog_bytes",
+        "instances",
     )
     __slots__ = _fields
 
@@ -38,6 +49,11 @@ class Limits(Record):
         sample_bytes: int = 64 << 20,
         assembly_bytes: int = 256 << 20,
         events: int = 65536,
+        all_held_bytes: int = 256 << 20,
+        peer_bytes: int = 64 << 20,
+        history_bytes: int = 256 << 20,
+        backlog_bytes: int = 32 << 20,
+        instances: int = 4096,
     ) -> None:
         self.participants = participants
         self.endpoints = endpoints
@@ -47,3 +63,8 @@ class Limits(Record):
         self.sample_bytes = sample_bytes
         self.assembly_bytes = assembly_bytes
         self.events = events
+        self.all_held_bytes = all_held_bytes
+        self.peer_bytes = peer_bytes
+        self.history_bytes = history_bytes
+        self.backlog_bytes = backlog_bytes
+        self.instances = instances

@@ -16,12 +16,11 @@ from roslet.wire.rtps.qos import DEFAULT_BLOCKING, KEEP_LAST, RELIABLE, TRANSIEN
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from typing import Any
 
-    from roslet.engine.rtps.fragments import Budget
-    from roslet.engine.rtps.limits import Limits
-    from roslet.engine.rtps.outbox import Outbox
+    from roslet.engine.rtps.common import Common
+    from roslet.engine.rtps.reader import Sink, WriterProxy
     from roslet.engine.rtps.spdp import RemoteParticipant
+    from roslet.wire.rtps.data import Data
 
 BUILTIN_QOS = Qos(
     reliability=(RELIABLE, DEFAULT_BLOCKING), durability=TRANSIENT_LOCAL, history=(KEEP_LAST, 1)
@@ -64,36 +63,24 @@ READERS = (
 )
 
 
+def _sink(local: bytes, deliver: "Callable[[bytes, WriterProxy, Data], None]") -> "Sink":
+    return lambda proxy, value, time: deliver(local, proxy, value)
+
+
 class Sedp:
-    """The builtin endpoints of a participant."""
+    """The builtin endpoints of a participant. `deliver(local, proxy, value)` takes what its reader `local` receives."""
 
     def __init__(
         self,
         prefix: bytes,
-        header: bytes,
-        outbox: "Outbox",
-        counters: "dict[str, int]",
-        limits: "Limits",
-        budget: "Budget",
-        epoch: int,
-        deliver: "Callable[[Any], None]",
+        common: "Common",
+        deliver: "Callable[[bytes, WriterProxy, Data], None]",
     ) -> None:
         self.writers = {
-            ours: Writer(
-                EndpointData(prefix + ours, qos=BUILTIN_QOS), header, outbox, counters, deliver, epoch
-            )
-            for ours, _, _ in WRITERS
+            ours: Writer(EndpointData(prefix + ours, qos=BUILTIN_QOS), common) for ours, _, _ in WRITERS
         }
         self.readers = {
-            ours: Reader(
-                EndpointData(prefix + ours, qos=BUILTIN_QOS),
-                header,
-                outbox,
-                counters,
-                limits,
-                budget,
-                deliver,
-            )
+            ours: Reader(EndpointData(prefix + ours, qos=BUILTIN_QOS), common, _sink(ours, deliver))
             for ours, _, _ in READERS
         }
 
@@ -104,23 +91,30 @@ class Sedp:
         for ours, theirs, bit in WRITERS:
             if has & bit:
                 self.writers[ours].match(
-                    EndpointData(prefix + theirs, qos=BUILTIN_QOS), remote.metatraffic, now
+                    EndpointData(prefix + theirs, qos=BUILTIN_QOS),
+                    remote.metatraffic,
+                    now,
+                    remote.data.vendor_id,
                 )
         found = []
         for ours, theirs, bit in READERS:
             if has & bit:
                 self.readers[ours].match(
-                    EndpointData(prefix + theirs, qos=BUILTIN_QOS), remote.metatraffic, now
+                    EndpointData(prefix + theirs, qos=BUILTIN_QOS),
+                    remote.metatraffic,
+                    now,
+                    remote.data.vendor_id,
                 )
                 found.append((self.readers[ours], prefix + theirs))
         return found
 
-    def unmatch(self, prefix: bytes) -> None:
-        """Forget a participant."""
+    def unmatch(self, prefix: bytes, now: float) -> "list[bytes]":
+        """Forget a participant; returns the GUIDs of its writers."""
         for ours, theirs, _ in WRITERS:
-            self.writers[ours].unmatch(prefix + theirs)
+            self.writers[ours].unmatch(prefix + theirs, now)
         for ours, theirs, _ in READERS:
-            self.readers[ours].unmatch(prefix + theirs)
+            self.readers[ours].unmatch(prefix + theirs, now)
+        return [prefix + theirs for _, theirs, _ in READERS]
 
     def answered(self, prefix: bytes) -> bool:
         """Whether a matched participant has acknowledged anything of ours, or has nothing to do it with."""

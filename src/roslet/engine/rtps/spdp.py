@@ -6,8 +6,9 @@ participant renews its lease; only its own announcement makes it known.
 
 from roslet.engine.rtps.events import ParticipantDiscovered, ParticipantLost
 from roslet.engine.rtps.reach import addresses_of, near
+from roslet.engine.rtps.schedule import Alarm
 from roslet.errors import ProtocolError
-from roslet.wire.rtps import header, info_dst, info_ts, inline_qos, participant_data
+from roslet.wire.rtps import info_dst, info_ts, inline_qos, participant_data
 from roslet.wire.rtps.data import FLAG_D, FLAG_K, Data
 from roslet.wire.rtps.guid import (
     ENTITYID_SPDP_BUILTIN_PARTICIPANT_READER,
@@ -20,10 +21,9 @@ from roslet.wire.rtps.times import INFINITE
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from typing import Any
 
-    from roslet.engine.rtps.limits import Limits
-    from roslet.engine.rtps.outbox import Address, Outbox
+    from roslet.engine.rtps.common import Common
+    from roslet.engine.rtps.outbox import Address
     from roslet.engine.rtps.reach import Network
     from roslet.wire.rtps.participant_data import ParticipantData
 
@@ -102,50 +102,46 @@ class Spdp:
     def __init__(
         self,
         own: "ParticipantData",
-        outbox: "Outbox",
+        common: "Common",
         addresses: "tuple[Address, ...]",
         period: float,
-        limits: "Limits",
-        epoch: int,
-        deliver: "Callable[[Any], None]",
         discovered: "Callable[[RemoteParticipant, float], None]",
-        lost: "Callable[[RemoteParticipant], None]",
+        lost: "Callable[[RemoteParticipant, float], None]",
         answered: "Callable[[bytes], bool]",
-        count: "Callable[[str], None]",
         networks: "tuple[Network, ...]" = (),
     ) -> None:
         self.remotes: dict[bytes, RemoteParticipant] = {}
         self.own = own
-        self._outbox = outbox
+        self._outbox = common.outbox
         self._addresses = addresses
         self._networks = networks
         self._period = period
-        self._limits = limits
-        self._epoch = epoch
-        self._deliver = deliver
+        self._limits = common.limits
+        self._epoch = common.epoch
+        self._deliver = common.deliver
         self._discovered = discovered
         self._lost = lost
         self._answered = answered
-        self._count = count
-        self._header = header.own(own.guid_prefix)
+        self._count = common.count
+        self._header = common.header
         self._payload = own.emit()
         self._sequence = 1
         self._quick = QUICK
-        self._announce_at: float | None = None
-        self._expire_at: float | None = None
+        self._announcing = Alarm(common.schedule, self._announce)
+        self._expiring = Alarm(common.schedule, self._expire)
 
     # -- announcing
 
     def start(self, now: float) -> None:
         """From now on announcements go out."""
-        self._announce_at = now
+        self._announcing.set(now)
 
     def change(self, own: "ParticipantData", now: float) -> None:
         """Announce other data, under the next sequence number: peers take the same number for a repeat."""
         self.own = own
         self._payload = own.emit()
         self._sequence += 1
-        self._announce_at = now
+        self._announcing.set(now)
 
     def move(
         self,
@@ -162,7 +158,7 @@ class Spdp:
         if own != self.own:
             self.change(own, now)
         else:
-            self._announce_at = now
+            self._announcing.set(now)
         for remote in list(self.remotes.values()):
             remote.update(remote.data, remote.host, networks)
             self._outbox.send(self._announcement(now, remote.data.guid_prefix), remote.metatraffic)
@@ -177,7 +173,7 @@ class Spdp:
 
     def depart(self, now: float) -> None:
         """Tell everybody that we are gone."""
-        self._announce_at = None
+        self._announcing.cancel()
         key = inline_qos.InlineQos(self.own.guid, STATUS_DISPOSED | STATUS_UNREGISTERED).emit()
         value = Data(
             ENTITYID_UNKNOWN,
@@ -207,7 +203,7 @@ class Spdp:
         if not guid and value.flags & FLAG_K:
             guid = participant_data.parse(value.payload).guid
         if said.status & (STATUS_DISPOSED | STATUS_UNREGISTERED) and guid[:12] == prefix:
-            self._step(prefix, DEPARTED)
+            self._step(prefix, DEPARTED, now)
 
     def _announced(self, found: "ParticipantData", host: str, now: float) -> None:
         own = self.own
@@ -239,39 +235,35 @@ class Spdp:
             if not self._answered(prefix):
                 # Our greeting was lost, or it lost us; its next chance would be our next announcement.
                 self._outbox.send(self._announcement(now, prefix), remote.metatraffic)
-        self._expire_at = min(self._expire_at or now, now)
+        if remote is not None and remote.lease is not None:
+            self._expiring.set(remote.heard + remote.lease)
 
-    def _step(self, prefix: bytes, event: str) -> None:
+    def _step(self, prefix: bytes, event: str, now: float) -> None:
         action = TRANSITIONS[(ALIVE if prefix in self.remotes else ABSENT, event)][1]
         if action in ("forget", "expire"):
             remote = self.remotes.pop(prefix)
-            self._lost(remote)
+            self._lost(remote, now)
             self._deliver(ParticipantLost(remote.data, action == "expire"))
 
     # -- time
 
-    def deadline(self) -> "float | None":
-        """When `handle_deadline` has something to do."""
-        if self._announce_at is None or self._expire_at is None:
-            return self._announce_at if self._expire_at is None else self._expire_at
-        return min(self._announce_at, self._expire_at)
+    def _announce(self, now: float) -> None:
+        alone = [one.metatraffic for one in self.remotes.values() if one.alone]
+        singly = [one[0] for one in alone if one and one[0] not in self._addresses]
+        self._outbox.send(self._announcement(now), self._addresses + tuple(singly))
+        self._quick = max(0, self._quick - 1)
+        self._announcing.set(now + (QUICK_PERIOD if self._quick else self._period))
 
-    def handle_deadline(self, now: float) -> None:
-        """Announce, and let leases expire."""
-        if self._announce_at is not None and now >= self._announce_at:
-            alone = [one.metatraffic for one in self.remotes.values() if one.alone]
-            singly = [one[0] for one in alone if one and one[0] not in self._addresses]
-            self._outbox.send(self._announcement(now), self._addresses + tuple(singly))
-            self._quick = max(0, self._quick - 1)
-            self._announce_at = now + (QUICK_PERIOD if self._quick else self._period)
-        if self._expire_at is not None and now >= self._expire_at:
-            soonest: float | None = None
-            for prefix, remote in list(self.remotes.items()):
-                if remote.lease is None:
-                    continue
-                at = remote.heard + remote.lease
-                if now >= at:
-                    self._step(prefix, EXPIRED)
-                elif soonest is None or at < soonest:
-                    soonest = at
-            self._expire_at = soonest
+    def _expire(self, now: float) -> None:
+        """Let leases expire. As whatever is heard renews one, the earliest end is looked for only when one was near."""
+        soonest: float | None = None
+        for prefix, remote in list(self.remotes.items()):
+            if remote.lease is None:
+                continue
+            at = remote.heard + remote.lease
+            if now >= at:
+                self._step(prefix, EXPIRED, now)
+            elif soonest is None or at < soonest:
+                soonest = at
+        if soonest is not None:
+            self._expiring.set(soonest)

@@ -174,14 +174,12 @@ class Ros1Network(MasterApi, Network):
                 self.node.log.error(f"{publisher.topic}: published and subscribed here with different types")
 
     def service(self, name: str, service_type: Any, handler: Callable[[Any], Any]) -> Ros1Service:
-        service = Ros1Service(
-            self, self.node, name, own_classes("ros1", service_type, services=True), handler
-        )
+        service = Ros1Service(self, self.node, name, own_classes("ros1", service_type, "service"), handler)
         self.settle()
         return service
 
     def client(self, name: str, service_type: Any, persistent: bool) -> Ros1Client:
-        kind = own_classes("ros1", service_type, services=True)
+        kind = own_classes("ros1", service_type, "service")
         return Ros1Client(self, self.node, name, kind, persistent)
 
     # -- time and log

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from roslet.errors import CallTimeout, RosletError, ServiceFailed, Unreachable
+from roslet.node.future import Future
 from roslet.node.services import Client, Service
 
 TYPE_CHECKING = False
@@ -12,7 +13,6 @@ if TYPE_CHECKING:
 
     from roslet.engine.ros1.graph import ServiceOffer
     from roslet.engine.ros1.links import ServiceClientLink
-    from roslet.node.future import Future
     from roslet.node.node import Node
     from roslet.node.ros1.network import Ros1Network
 
@@ -30,9 +30,25 @@ class Ros1Service(Service):
         self._network = network
         self._entry: ServiceOffer | None = network.offer(self, self._serve)
 
-    def _serve(self, view: memoryview, start: int, end: int, link: Any) -> bytes:
+    def _serve(self, view: memoryview, start: int, end: int, link: Any) -> bytes | None:
         # A buffer of its own: the handler may keep the request, and its views.
-        return self._answer(memoryview(bytearray(view[start:end])), link)
+        answer = self._answer(memoryview(bytearray(view[start:end])), link)
+        if not isinstance(answer, Future):
+            return answer
+        answer.add_done_callback(lambda done: self._respond_late(done, link))
+        return None
+
+    def _respond_late(self, done: Future[Any], link: Any) -> None:
+        try:
+            right, body = True, self._answer_of(done)
+        except ServiceFailed as error:
+            right, body = False, str(error).encode()
+        network = self._network
+        with network.reactor.lock:
+            link.answer(right, body)
+            network.engine.touch(link)
+            network.update()
+        network.reactor.wake()
 
     def close(self) -> None:
         entry, self._entry = self._entry, None

@@ -7,12 +7,19 @@ import os
 import threading
 import time
 
+from roslet.engine.ros2.actions import RESULT_TIMEOUT
 from roslet.errors import InvalidName, Unsupported
 from roslet.names import REQUEST, TOPIC, Ros2Arguments, dds_topic, dds_type, parse_ros2_network, resolve_ros2
 from roslet.node.network import Network, own_classes
+from roslet.node.ros2 import descriptions
 from roslet.node.ros2 import qos as presets
+from roslet.node.ros2.actions import ActionClient, ActionServer
+from roslet.node.ros2.parameter_files import overrides_of
+from roslet.node.ros2.parameters import NodeParameters
 from roslet.node.ros2.process import join
+from roslet.node.ros2.services import Ros2Client, Ros2Service
 from roslet.node.ros2.topics import Ros2Publisher, Ros2Subscription, pair, unpair
+from roslet.wire.tcpros import MAX_FRAME
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -25,6 +32,7 @@ if TYPE_CHECKING:
     from roslet.io.ros2 import Ros2Shell
     from roslet.node.node import Node
     from roslet.node.qos import QoS
+    from roslet.node.ros2.actions import ServerGoal
 
 # Seconds that closing a node gives reliable subscribers to acknowledge what was published.
 CLOSE_TIMEOUT = 0.25
@@ -59,17 +67,20 @@ class Ros2Network(Network):
         self.name = f"{'' if self.namespace == '/' else self.namespace}/{self.base_name}"
         self._settings = parse_ros2_network(url, dict(environment))
         self.url = self._settings.url
-        self._handle = 0
+        self.handle = 0
         self._counting = threading.Lock()
         self._counters: dict[str, int] = {}
         self._publishers: list[Ros2Publisher] = []
         self._subscriptions: list[Ros2Subscription] = []
+        self.services_made: list[Ros2Service] = []
+        self.clients: list[Ros2Client] = []
+        self._clock: Ros2Subscription | None = None
 
     def open(self) -> None:
         self.process = join(self.reactor, self._settings, self.arguments.enclave or "/", self.node._note)
         shell = self.shell
         with self.reactor.lock:
-            self._handle = shell.context.add_node(self.base_name, self.namespace, self.reactor.now())
+            self.handle = shell.context.add_node(self.base_name, self.namespace, self.reactor.now())
             shell.flush()
 
     @property
@@ -83,8 +94,13 @@ class Ros2Network(Network):
         return self.process.shell.context.graph
 
     def begin(self) -> None:
-        if self.arguments.switches.get("rosout-logs", True):
+        overrides = overrides_of(self.arguments.overrides, self.base_name, self.name)
+        if self.node._seen and self.arguments.switches.get("rosout-logs", True):
             self.node.log._publisher = self.publisher("/rosout", "rcl_interfaces/msg/Log", presets.ROSOUT)
+        self.parameters = NodeParameters(self, overrides)
+        described = self.parameters.declare("start_type_description_service", True, read_only=True)
+        if described and self.node._seen:
+            descriptions.offer(self)
 
     def say_goodbye(self) -> None:
         waiting = [one for one in self._publishers if one._writer is not None and one._writer.proxies]
@@ -96,10 +112,14 @@ class Ros2Network(Network):
             publisher.close()
         for subscription in list(self._subscriptions):
             subscription.close()
+        for service in list(self.services_made):
+            service.close()
+        for client in list(self.clients):
+            client.close()
         shell = self.shell
         with self.reactor.lock:
             now = self.reactor.now()
-            shell.context.remove_node(self._handle, now)
+            shell.context.remove_node(self.handle, now)
             shell.context.flush(now)
             shell.flush()
         self.process.leave()
@@ -114,6 +134,24 @@ class Ros2Network(Network):
 
     def resolve_service(self, name: str) -> str:
         return resolve_ros2(name, self.base_name, self.namespace, self.arguments.remappings, REQUEST)
+
+    def own_service(self, name: str) -> str:
+        """The full name of a service of the node itself."""
+        return self.resolve_service("~/" + name)
+
+    def follow_clock(self, simulated: bool) -> None:
+        """Go by /clock, or by the wall clock again."""
+        clock = self.node.clock
+        if simulated and self._clock is None:
+            clock.simulate()
+            self._clock = self.subscription(
+                self.resolve("/clock"), "rosgraph_msgs/msg/Clock", None, presets.CLOCK, MAX_FRAME, False
+            )
+            self._clock.in_loop(lambda message: clock.advance(message.clock.sec, message.clock.nanosec))
+        elif not simulated and self._clock is not None:
+            self._clock.close()
+            self._clock = None
+            clock.wall()
 
     def now(self) -> int:
         """The wall clock, nanoseconds of the Unix epoch."""
@@ -155,8 +193,8 @@ class Ros2Network(Network):
         message_type: Any,
         callback: Callable[..., object] | None,
         qos: QoS,
-        max_message: int,
-        with_link: bool,
+        max_message: int = MAX_FRAME,
+        with_link: bool = False,
     ) -> Ros2Subscription:
         if message_type in (None, "*"):
             kind, type_name = None, self._type_of(topic)
@@ -189,7 +227,7 @@ class Ros2Network(Network):
         kind = publisher.type
         with self.reactor.lock:
             writer = self.shell.context.create_writer(
-                self._handle,
+                self.handle,
                 dds_topic(TOPIC, publisher.topic),
                 dds_type(kind._type),
                 publisher._policies,
@@ -204,7 +242,7 @@ class Ros2Network(Network):
         kind = subscription.type
         with self.reactor.lock:
             reader = self.shell.context.create_reader(
-                self._handle,
+                self.handle,
                 dds_topic(TOPIC, subscription.topic),
                 dds_type(subscription.type_name),
                 subscription._policies,
@@ -223,7 +261,7 @@ class Ros2Network(Network):
             self.process.publishers[publisher.topic].remove(publisher)
             for subscription in self.process.subscriptions.get(publisher.topic, ()):
                 unpair(publisher, subscription)
-            self.shell.context.delete_writer(self._handle, writer, self.reactor.now())
+            self.shell.context.delete_writer(self.handle, writer, self.reactor.now())
             self.shell.handle(writer.entity_id, None)
             self.shell.flush()
 
@@ -234,9 +272,67 @@ class Ros2Network(Network):
             self.process.subscriptions[subscription.topic].remove(subscription)
             for publisher in self.process.publishers.get(subscription.topic, ()):
                 unpair(publisher, subscription)
-            self.shell.context.delete_reader(self._handle, reader, self.reactor.now())
+            self.shell.context.delete_reader(self.handle, reader, self.reactor.now())
             self.shell.handle(reader.entity_id, None)
             self.shell.flush()
+
+    # -- services
+
+    def service(
+        self,
+        name: str,
+        service_type: Any,
+        handler: Callable[[Any], Any],
+        qos: QoS = presets.SERVICES,
+        background: bool = False,
+    ) -> Ros2Service:
+        kind = own_classes("ros2", service_type, "service")
+        service = Ros2Service(self, self.node, name, kind, handler, qos, background)
+        self.services_made.append(service)
+        return service
+
+    def client(
+        self, name: str, service_type: Any, persistent: bool = False, qos: QoS = presets.SERVICES
+    ) -> Ros2Client:
+        client = Ros2Client(self, self.node, name, own_classes("ros2", service_type, "service"), qos)
+        self.clients.append(client)
+        return client
+
+    # -- actions
+
+    def action_server(
+        self,
+        name: str,
+        action_type: Any,
+        handler: Callable[[ServerGoal], Any] | None = None,
+        accepted: Callable[[ServerGoal], object] | None = None,
+        on_goal: Callable[[Any], object] | None = None,
+        on_cancel: Callable[[ServerGoal], object] | None = None,
+        result_timeout: float | None = RESULT_TIMEOUT,
+    ) -> ActionServer:
+        """`name` is full."""
+        kind = own_classes("ros2", action_type, "action")
+        return ActionServer(self, name, kind, handler, accepted, on_goal, on_cancel, result_timeout)
+
+    def action_client(self, name: str, action_type: Any) -> ActionClient:
+        """`name` is full."""
+        return ActionClient(self, name, own_classes("ros2", action_type, "action"))
+
+    def stamp(self, nanoseconds: int) -> Any:
+        """A builtin_interfaces/Time."""
+        sec, nanosec = divmod(nanoseconds, 1_000_000_000)
+        return own_classes("ros2", "builtin_interfaces/msg/Time")(sec=sec, nanosec=nanosec)
+
+    def goal_info(self, uuid: bytes, stamp: int) -> Any:
+        """An action_msgs/GoalInfo."""
+        made = own_classes("ros2", "action_msgs/msg/GoalInfo")(stamp=self.stamp(stamp))
+        made.goal_id.uuid = uuid
+        return made
+
+    def goal_status(self, uuid: bytes, stamp: int, status: int) -> Any:
+        """An action_msgs/GoalStatus."""
+        kind = own_classes("ros2", "action_msgs/msg/GoalStatus")
+        return kind(goal_info=self.goal_info(uuid, stamp), status=status)
 
     # -- the graph
 
@@ -279,4 +375,25 @@ class Ros2Network(Network):
     # -- parameters
 
     def declare_parameter(self, name: str, default: Any, **description: Any) -> Any:
-        raise NotImplementedError
+        return self.parameters.declare(name, default, **description)
+
+    def get_parameter(self, name: str) -> Any:
+        return self.parameters.get(name)
+
+    def set_parameter(self, name: str, value: Any) -> None:
+        self.parameters.set(name, value)
+
+    def delete_parameter(self, name: str) -> None:
+        self.parameters.undeclare(name)
+
+    def has_parameter(self, name: str) -> bool:
+        return self.parameters.store.has(name)
+
+    def parameter_names(self) -> list[str]:
+        return self.parameters.store.names()
+
+    def on_parameter(self, name: str, callback: Callable[[Any], object]) -> Any:
+        return self.parameters.on(name, callback)
+
+    def off_parameter(self, name: str, callback: Callable[[Any], object]) -> None:
+        self.parameters.off(name, callback)

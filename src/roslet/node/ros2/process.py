@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from roslet.io.select import Reactor
     from roslet.names import Ros2Network as Settings
-    from roslet.node.ros2.services import Ros2Service
+    from roslet.node.ros2.services import Ros2Client, Ros2Service
     from roslet.node.ros2.topics import Ros2Publisher, Ros2Subscription
 
 _processes: dict[tuple[int, str, str], Process] = {}
@@ -28,6 +28,7 @@ class Process:
         self.publishers: dict[str, list[Ros2Publisher]] = {}
         self.subscriptions: dict[str, list[Ros2Subscription]] = {}
         self.services: dict[str, list[Ros2Service]] = {}
+        self.clients: dict[str, list[Ros2Client]] = {}
         self._key = key
 
     def leave(self) -> None:

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 # Bytes that a publisher's own buffer grows to; a larger message is gathered into a buffer of its own, which the writer
 # keeps without a further copy.
 MAX_BUFFER = 60_000
+# Events of a publisher or subscription that nobody listens to yet; older ones are forgotten.
+MAX_EARLY = 100
 
 
 class MessageInfo:
@@ -63,14 +65,25 @@ class _Endpoint:
     node: Node
     _network: Ros2Network
     _listeners: list[Callable[[events.Event], object]]
+    _early: deque[events.Event]
     _on_connect: list[Callable[[str], None]]
     _on_disconnect: list[Callable[[str], None]]
 
     def on_event(self, function: Callable[[events.Event], object]) -> None:
-        """Call `function(event)` inside spin for what `roslet.node.events` has: matches, incompatible QoS and the like."""
-        self._listeners.append(function)
+        """Call `function(event)` inside spin for what `roslet.node.events` has: matches, incompatible QoS and the like.
+
+        The first function is also told what came before it, the last MAX_EARLY: a peer that was there first matches, or
+        does not, while the publisher or subscription is being made.
+        """
+        with self._network.reactor.lock:
+            self._listeners.append(function)
+            while self._early:
+                self.node._call_back(function, self._early.popleft())
 
     def _tell(self, event: events.Event) -> None:
+        """With the reactor's lock held."""
+        if not self._listeners:
+            self._early.append(event)
         for function in self._listeners:
             self.node._call_back(function, event)
 
@@ -108,7 +121,10 @@ class _Endpoint:
 
 
 class Ros2Publisher(_Endpoint, Publisher):
-    """A publisher of one topic; a node may have several of the same."""
+    """A publisher of one topic; a node may have several of the same.
+
+    A message that only subscriptions of this process get is copied, not serialised, and so its values are not checked.
+    """
 
     def __init__(
         self, network: Ros2Network, node: Node, topic: str, message_type: type[Message], qos: QoS
@@ -116,12 +132,15 @@ class Ros2Publisher(_Endpoint, Publisher):
         super().__init__(node, topic, message_type, qos)
         self._network = network
         self._listeners = []
+        self._early = deque(maxlen=MAX_EARLY)
         self._dropped = 0
         self._policies = to_dds(qos)
         # For local subscriptions that come late.
         self._kept: deque[Message] | None = deque(maxlen=qos.depth if not self._wait else MAX_KEPT)
         if not self._latch:
             self._kept = None
+        # Whether a message that nobody outside gets need not be known to the writer: it counts for deadline and liveliness.
+        self._here = not self._latch and qos.deadline is None and qos.liveliness == "automatic"
         self._shell = network.shell
         self._writer: Writer | None = network.create_writer(self)
 
@@ -153,6 +172,10 @@ class Ros2Publisher(_Endpoint, Publisher):
             message = self.type(**fields)
         elif fields or message.__class__ is not self.type:
             message = self._converted(message, fields)
+        if self._here and self._local and not writer.proxies:
+            self.messages += 1
+            self._deliver_locally(message)
+            return
         with self._lock:
             try:
                 payload: Any = self._view[: message.serialize_into(self._view, 0)]
@@ -194,7 +217,7 @@ class Ros2Publisher(_Endpoint, Publisher):
         """Say that this publisher is alive although it has nothing to publish; for liveliness "manual_by_topic"."""
         writer = self._open()
         with self._shell.reactor.lock:
-            writer.assert_liveliness()
+            writer.assert_liveliness(self._network.reactor.now())
             self._shell.flush()
 
     def _flushed(self) -> bool:
@@ -246,8 +269,10 @@ class Ros2Subscription(_Endpoint, Subscription):
         self.type_name = type_name
         self._network = network
         self._listeners = []
+        self._early = deque(maxlen=MAX_EARLY)
         self._policies = to_dds(qos)
         self._max_message = max_message
+        self._background = False
         self._sources: tuple[Ros2Publisher, ...] = ()  # of this process
         self._reader: Reader | None = network.create_reader(self, self._sample)
 
@@ -272,6 +297,17 @@ class Ros2Subscription(_Endpoint, Subscription):
         elif size > LARGE:
             keep_large_blocks()
         self._deliver_later(payload, (proxy.guid, value.sequence, time, self._network.now()))
+
+    def in_loop(self, callback: Callable[[Any], object]) -> None:
+        """Call `callback` in the loop whoever runs it, with the reactor's lock held: it must be quick and of ours."""
+        self._callback = callback
+        self._background = True
+
+    def _deliver_later(self, message: Any, link: Any = None) -> None:
+        if self._background:
+            self._deliver(message, link)
+        else:
+            super()._deliver_later(message, link)
 
     def _deliver(self, message: Any, link: Any) -> None:
         if link is not None:

@@ -1,0 +1,1 @@
+"""`rclpy.impl`: what rclpy's own modules share; programs take the levels of loggers from it."""

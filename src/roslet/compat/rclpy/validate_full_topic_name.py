@@ -1,0 +1,20 @@
+"""`rclpy.validate_full_topic_name`."""
+
+from __future__ import annotations
+
+from roslet.compat.rclpy._names import full_topic_fault
+from roslet.compat.rclpy.exceptions import InvalidServiceNameException, InvalidTopicNameException
+
+
+def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
+    """True for a topic's or service's full name.
+
+    Raises InvalidTopicNameException, or InvalidServiceNameException, for anything else.
+    """
+    fault = full_topic_fault(name)
+    if fault is None:
+        return True
+    raise (InvalidServiceNameException if is_service else InvalidTopicNameException)(name, *fault)
+
+
+__all__ = ["validate_full_topic_name"]

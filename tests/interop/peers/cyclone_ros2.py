@@ -1,0 +1,548 @@
+"""A CycloneDDS program that obeys the commands of roslet_ros2.py. There is no rmw in it: topics, types and services have
+the names that ROS 2 gives them in DDS, and the types are written here by hand.
+"""
+
+import os
+import struct
+import sys
+import threading
+import time
+import uuid
+from dataclasses import dataclass
+
+from commands import fork, kill, process, run
+from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsParticipant
+from cyclonedds.core import Listener, Policy, Qos
+from cyclonedds.domain import DomainParticipant
+from cyclonedds.idl import IdlStruct
+from cyclonedds.idl.annotations import key as is_key
+from cyclonedds.idl.types import (
+    array,
+    bounded_str,
+    byte,
+    float64,
+    int8,
+    int32,
+    int64,
+    sequence,
+    uint8,
+    uint16,
+    uint32,
+    uint64,
+)
+from cyclonedds.pub import DataWriter
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic
+from cyclonedds.util import duration
+from ros2_samples import QOS, Inbox, build, differences, expected, request, response, sample
+
+POLICIES = {2: "durability", 4: "deadline", 8: "liveliness", 11: "reliability"}
+TYPES = {}
+
+
+def ros(name):
+    """A dataclass is the ROS type of this name."""
+
+    def register(kind):
+        made = dataclass(kind)
+        TYPES[name] = made
+        return made
+
+    return register
+
+
+@ros("builtin_interfaces/msg/Time")
+class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
+    sec: int32
+    nanosec: uint32
+
+
+@ros("std_msgs/msg/Header")
+class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
+    stamp: Time
+    frame_id: str
+
+
+@ros("std_msgs/msg/String")
+class String(IdlStruct, typename="std_msgs::msg::dds_::String_"):
+    data: str
+
+
+@ros("std_msgs/msg/UInt32")
+class UInt32(IdlStruct, typename="std_msgs::msg::dds_::UInt32_"):
+    data: uint32
+
+
+@ros("geometry_msgs/msg/Point")
+class Point(IdlStruct, typename="geometry_msgs::msg::dds_::Point_"):
+    x: float64
+    y: float64
+    z: float64
+
+
+@ros("geometry_msgs/msg/PointStamped")
+class PointStamped(IdlStruct, typename="geometry_msgs::msg::dds_::PointStamped_"):
+    header: Header
+    point: Point
+
+
+@ros("sensor_msgs/msg/Image")
+class Image(IdlStruct, typename="sensor_msgs::msg::dds_::Image_"):
+    header: Header
+    height: uint32
+    width: uint32
+    encoding: str
+    is_bigendian: uint8
+    step: uint32
+    data: sequence[uint8]
+
+
+@ros("sensor_msgs/msg/PointField")
+class PointField(IdlStruct, typename="sensor_msgs::msg::dds_::PointField_"):
+    name: str
+    offset: uint32
+    datatype: uint8
+    count: uint32
+
+
+@ros("sensor_msgs/msg/PointCloud2")
+class PointCloud2(IdlStruct, typename="sensor_msgs::msg::dds_::PointCloud2_"):
+    header: Header
+    height: uint32
+    width: uint32
+    fields: sequence[PointField]
+    is_bigendian: bool
+    point_step: uint32
+    row_step: uint32
+    data: sequence[uint8]
+    is_dense: bool
+
+
+@ros("diagnostic_msgs/msg/KeyValue")
+class KeyValue(IdlStruct, typename="diagnostic_msgs::msg::dds_::KeyValue_"):
+    key: str
+    value: str
+
+
+@ros("diagnostic_msgs/msg/DiagnosticStatus")
+class DiagnosticStatus(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticStatus_"):
+    level: byte
+    name: str
+    message: str
+    hardware_id: str
+    values: sequence[KeyValue]
+
+
+@ros("diagnostic_msgs/msg/DiagnosticArray")
+class DiagnosticArray(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticArray_"):
+    header: Header
+    status: sequence[DiagnosticStatus]
+
+
+@ros("geometry_msgs/msg/Vector3")
+class Vector3(IdlStruct, typename="geometry_msgs::msg::dds_::Vector3_"):
+    x: float64
+    y: float64
+    z: float64
+
+
+@ros("geometry_msgs/msg/Quaternion")
+class Quaternion(IdlStruct, typename="geometry_msgs::msg::dds_::Quaternion_"):
+    x: float64
+    y: float64
+    z: float64
+    w: float64
+
+
+@ros("geometry_msgs/msg/Transform")
+class Transform(IdlStruct, typename="geometry_msgs::msg::dds_::Transform_"):
+    translation: Vector3
+    rotation: Quaternion
+
+
+@ros("geometry_msgs/msg/TransformStamped")
+class TransformStamped(IdlStruct, typename="geometry_msgs::msg::dds_::TransformStamped_"):
+    header: Header
+    child_frame_id: str
+    transform: Transform
+
+
+@ros("tf2_msgs/msg/TFMessage")
+class TFMessage(IdlStruct, typename="tf2_msgs::msg::dds_::TFMessage_"):
+    transforms: sequence[TransformStamped]
+
+
+@ros("probe_msgs/msg/Part")
+class Part(IdlStruct, typename="probe_msgs::msg::dds_::Part_"):
+    code: int8
+    name: str
+    big: int64
+
+
+@ros("probe_msgs/msg/Probe")
+class Probe(IdlStruct, typename="probe_msgs::msg::dds_::Probe_"):
+    number: int32
+    label: bounded_str[32]
+    flags: array[bool, 3]
+    parts: sequence[Part, 4]
+    after: uint16
+    pair: array[Part, 2]
+    values: sequence[float64]
+
+
+@ros("keyed")
+class Keyed(IdlStruct, typename="probe_msgs::msg::dds_::Keyed_"):
+    name: str
+    is_key("name")
+    value: int32
+
+
+# Services, with the header of rmw_cyclonedds: who asks, and the number of the request.
+
+
+@dataclass
+class SetBoolRequest(IdlStruct, typename="std_srvs::srv::dds_::SetBool_Request_"):
+    client: uint64
+    number: int64
+    data: bool
+
+
+@dataclass
+class SetBoolResponse(IdlStruct, typename="std_srvs::srv::dds_::SetBool_Response_"):
+    client: uint64
+    number: int64
+    success: bool
+    message: str
+
+
+@dataclass
+class TriggerRequest(IdlStruct, typename="std_srvs::srv::dds_::Trigger_Request_"):
+    client: uint64
+    number: int64
+    structure_needs_at_least_one_member: uint8
+
+
+@dataclass
+class TriggerResponse(IdlStruct, typename="std_srvs::srv::dds_::Trigger_Response_"):
+    client: uint64
+    number: int64
+    success: bool
+    message: str
+
+
+@ros("sensor_msgs/msg/RegionOfInterest")
+class RegionOfInterest(IdlStruct, typename="sensor_msgs::msg::dds_::RegionOfInterest_"):
+    x_offset: uint32 = 0
+    y_offset: uint32 = 0
+    height: uint32 = 0
+    width: uint32 = 0
+    do_rectify: bool = False
+
+
+@ros("sensor_msgs/msg/CameraInfo")
+class CameraInfo(IdlStruct, typename="sensor_msgs::msg::dds_::CameraInfo_"):
+    header: Header
+    height: uint32
+    width: uint32
+    distortion_model: str
+    d: sequence[float64]
+    k: array[float64, 9]
+    r: array[float64, 9]
+    p: array[float64, 12]
+    binning_x: uint32
+    binning_y: uint32
+    roi: RegionOfInterest
+
+
+@dataclass
+class SetCameraInfoRequest(IdlStruct, typename="sensor_msgs::srv::dds_::SetCameraInfo_Request_"):
+    client: uint64
+    number: int64
+    camera_info: CameraInfo
+
+
+@dataclass
+class SetCameraInfoResponse(IdlStruct, typename="sensor_msgs::srv::dds_::SetCameraInfo_Response_"):
+    client: uint64
+    number: int64
+    success: bool
+    status_message: str
+
+
+SERVICES = {
+    "std_srvs/srv/SetBool": (SetBoolRequest, SetBoolResponse),
+    "std_srvs/srv/Trigger": (TriggerRequest, TriggerResponse),
+    "sensor_msgs/srv/SetCameraInfo": (SetCameraInfoRequest, SetCameraInfoResponse),
+}
+
+endpoints = {}
+inboxes = {}
+facts = {}
+participant = None
+
+
+def make(type_name, fields):
+    if type_name == "sensor_msgs/msg/CameraInfo":
+        zeros = {"k": [0.0] * 9, "r": [0.0] * 9, "p": [0.0] * 12, "roi": RegionOfInterest()}
+        plain = {"height": 0, "width": 0, "distortion_model": "", "binning_x": 0, "binning_y": 0}
+        fields = {**zeros, **plain, **fields}
+    return TYPES[type_name](**fields)
+
+
+def span(seconds):
+    return duration(infinite=True) if seconds is None else duration(nanoseconds=round(seconds * 1e9))
+
+
+def profile(qos):
+    qos = {**QOS, **qos}
+    reliable = qos["reliability"] == "reliable"
+    live = Policy.Liveliness
+    live = live.Automatic if qos["liveliness"] == "automatic" else live.ManualByTopic
+    return Qos(
+        Policy.Reliability.Reliable(duration(seconds=10)) if reliable else Policy.Reliability.BestEffort,
+        Policy.Durability.TransientLocal if qos["durability"] == "transient_local" else Policy.Durability.Volatile,
+        Policy.History.KeepAll if qos["history"] == "keep_all" else Policy.History.KeepLast(qos["depth"]),
+        Policy.DurabilityService(
+            cleanup_delay=0,
+            history=Policy.History.KeepLast(qos["depth"]),
+            max_samples=-1,
+            max_instances=-1,
+            max_samples_per_instance=-1,
+        ),
+        Policy.Deadline(span(qos["deadline"])),
+        Policy.Lifespan(span(qos["lifespan"])),
+        live(span(qos["lease"])),
+    )
+
+
+class Endpoint:
+    def __init__(self, entity, type_name):
+        self.entity = entity
+        self.type_name = type_name
+        self.open = True
+
+
+class Watching(Listener):
+    """Keeps what happens to an endpoint."""
+
+    def __init__(self, told):
+        self.told = told
+        super().__init__()
+
+    def on_requested_incompatible_qos(self, reader, status):
+        self.told.append(["incompatible", POLICIES[status.last_policy_id]])
+
+    def on_offered_incompatible_qos(self, writer, status):
+        self.told.append(["incompatible", POLICIES[status.last_policy_id]])
+
+    def on_requested_deadline_missed(self, reader, status):
+        self.told.append(["deadline"])
+
+    def on_offered_deadline_missed(self, writer, status):
+        self.told.append(["deadline"])
+
+    def on_liveliness_changed(self, reader, status):
+        if status.alive_count_change > 0:
+            self.told.append(["alive"])
+        if status.not_alive_count_change > 0:
+            self.told.append(["lost"])
+
+    def on_liveliness_lost(self, writer, status):
+        self.told.append(["lost"])
+
+    def on_sample_lost(self, reader, status):
+        self.told.append(["messages lost", status.total_count_change])
+
+
+def publisher(key, topic, type_name, qos):
+    told = facts[key] = []
+    made = Topic(participant, "rt" + topic, TYPES[type_name])
+    writer = DataWriter(participant, made, qos=profile(qos), listener=Watching(told))
+    endpoints[key] = Endpoint(writer, type_name)
+
+
+def taking(endpoint, sink):
+    """A thread that gives every valid sample to `sink`."""
+
+    def take():
+        while endpoint.open:
+            for one in endpoint.entity.take(100):
+                if one.sample_info.valid_data:
+                    sink(one)
+            time.sleep(0.003)
+
+    threading.Thread(target=take, daemon=True).start()
+
+
+def subscription(key, topic, type_name, size, qos, nap=0.0):
+    told = facts[key] = []
+    inbox = inboxes[key] = Inbox(type_name, size, nap)
+    made = Topic(participant, "rt" + topic, TYPES[type_name])
+    reader = DataReader(participant, made, qos=profile(qos), listener=Watching(told))
+    endpoint = endpoints[key] = Endpoint(reader, type_name)
+    taking(endpoint, inbox)
+
+
+def publish(key, first, count, size, pause):
+    made = endpoints[key]
+    for i in range(first, first + count):
+        made.entity.write(build(sample(made.type_name, i, size), make, list, ord))
+        time.sleep(pause)
+
+
+def matched(key):
+    entity = endpoints[key].entity
+    if isinstance(entity, DataWriter):
+        return len(entity.get_matched_subscriptions())
+    return len(entity.get_matched_publications())
+
+
+def close(key):
+    endpoint = endpoints.pop(key)
+    endpoint.open = False
+    time.sleep(0.02)
+    del endpoint
+
+
+def keyed(key, topic):
+    made = Topic(participant, "rt" + topic, Keyed)
+    endpoints[key] = Endpoint(DataWriter(participant, made, qos=profile({})), "keyed")
+
+
+def write_keyed(key, name, value):
+    endpoints[key].entity.write(Keyed(name=name, value=value))
+
+
+def dispose_keyed(key, name):
+    endpoints[key].entity.dispose(Keyed(name=name, value=0))
+
+
+def unregister_keyed(key, name):
+    writer = endpoints[key].entity
+    writer.unregister_instance(Keyed(name=name, value=0))
+
+
+def user_data(name, value):
+    return Policy.Userdata(("%s=%s;" % (name, value)).encode())
+
+
+def both_ways(name, type_name, serving):
+    """Reader and writer of a service, or of a client of it, and what identifies them in the header."""
+    asked, answered = SERVICES[type_name]
+    requests = Topic(participant, "rq" + name + "Request", asked)
+    replies = Topic(participant, "rr" + name + "Reply", answered)
+    own = uuid.uuid4()
+    identity = user_data("serviceid" if serving else "clientid", ".".join("%x" % one for one in own.bytes))
+    qos = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(10), identity)
+    reads, writes = (requests, replies) if serving else (replies, requests)
+    reader = DataReader(participant, reads, qos=qos)
+    writer = DataWriter(participant, writes, qos=qos)
+    return reader, writer, struct.unpack("<Q", own.bytes[:8])[0]
+
+
+def service(key, name, type_name):
+    reader, writer, _ = both_ways(name, type_name, True)
+    endpoint = endpoints[key] = Endpoint(reader, type_name)
+    endpoint.writer = writer
+    answered = SERVICES[type_name][1]
+
+    def serve(asked):
+        fields = response(type_name, asked)
+        writer.write(answered(client=asked.client, number=asked.number, **fields))
+
+    taking(endpoint, serve)
+
+
+def client(key, name, type_name):
+    reader, writer, own = both_ways(name, type_name, False)
+    endpoint = endpoints[key] = Endpoint(reader, type_name)
+    endpoint.writer, endpoint.own, endpoint.last, endpoint.answers = writer, own, 0, {}
+
+    def hear(answer):
+        if answer.client == own:
+            endpoint.answers[answer.number] = answer
+
+    taking(endpoint, hear)
+
+
+def ready(key):
+    endpoint = endpoints[key]
+    return bool(endpoint.writer.get_matched_subscriptions() and endpoint.entity.get_matched_publications())
+
+
+def call(key, first, count, size, timeout):
+    endpoint = endpoints[key]
+    kind = SERVICES[endpoint.type_name][0]
+    numbers = []
+    for i in range(first, first + count):
+        endpoint.last += 1
+        fields = build(request(endpoint.type_name, i, size), make, list)
+        if endpoint.type_name == "std_srvs/srv/Trigger":
+            fields = {"structure_needs_at_least_one_member": 0}
+        endpoint.writer.write(kind(client=endpoint.own, number=endpoint.last, **fields))
+        numbers.append((i, endpoint.last))
+    end = time.monotonic() + timeout
+    wrong = []
+    for i, number in numbers:
+        while number not in endpoint.answers and time.monotonic() < end:
+            time.sleep(0.002)
+        answer = endpoint.answers.pop(number, None)
+        if answer is None:
+            wrong.append("%d: timeout" % i)
+        else:
+            wrong += differences(expected(endpoint.type_name, i, size), answer, str(i))
+    return wrong
+
+
+def participants():
+    """How many participants Cyclone knows of, its own included."""
+    return sum(1 for one in known.read(1000) if one.sample_info.valid_data and one.sample_info.instance_state == 16)
+
+
+def begin():
+    global participant, known
+    participant = DomainParticipant(int(os.environ.get("ROS_DOMAIN_ID", "0")))
+    known = BuiltinDataReader(participant, BuiltinTopicDcpsParticipant)
+
+
+def mortal(name):
+    """As in roslet_ros2.py."""
+    begin()
+    qos = profile({})
+    reader = DataReader(participant, Topic(participant, "rt/to", UInt32), qos=qos)
+    writer = DataWriter(participant, Topic(participant, "rt/from", String), qos=qos)
+    while True:
+        for one in reader.take(100):
+            if one.sample_info.valid_data:
+                writer.write(String(data="%d" % os.getpid()))
+        time.sleep(0.01)
+
+
+COMMANDS = {
+    "publisher": publisher,
+    "subscription": subscription,
+    "publish": publish,
+    "assert_liveliness": lambda key: None,
+    "heard": lambda key: inboxes[key].told(),
+    "last": lambda key: inboxes[key].numbers[-1:],
+    "events": lambda key: facts[key],
+    "matched": matched,
+    "close": close,
+    "keyed": keyed,
+    "write_keyed": write_keyed,
+    "dispose_keyed": dispose_keyed,
+    "unregister_keyed": unregister_keyed,
+    "service": service,
+    "client": client,
+    "ready": ready,
+    "call": call,
+    "participants": participants,
+    "process": process,
+    "mortal": lambda name: fork(lambda: mortal(name)),
+    "kill": kill,
+}
+
+if len(sys.argv) > 1:
+    begin()
+run(COMMANDS)
+os._exit(0)  # whatever threads of the middleware are doing
