@@ -75,13 +75,13 @@ def test_a_server_that_goes_is_noticed_and_one_that_returns_is_used(
     two: tuple[roslet.Node, roslet.Node],
 ) -> None:
     server, caller = two
-    client = caller.client("/ask", SET_BOOL)
+    client: Any = caller.client("/ask", SET_BOOL)
     server.start()
     for _ in range(3):
         with server.service("/ask", SET_BOOL, answer):
             assert client.wait(timeout=8)
             assert client.call(data=True, timeout=8).success
-        wait_until(lambda: not client.wait(timeout=0), "it is noticed that the server has gone")
+        wait_until(lambda: not client.ready(), "it is noticed that the server has gone")
 
 
 def test_closing_the_node_ends_its_calls(two: tuple[roslet.Node, roslet.Node]) -> None:
