@@ -37,7 +37,7 @@ def test_fifty_participants_and_real_ones_all_hear_each_other(tmp_path: pathlib.
         said = [*range(FIFTY), *range(1000, 1000 + len(others))]
         for k, crowd in enumerate(crowds):
             expected = [[one for one in said if one != EACH * k + i] for i in range(EACH)]
-            crowd.wait(expected, "crowd_heard", patience=30)
+            crowd.wait(expected, "crowd_heard", patience=60)
         for peer in others:
             wait_until(lambda peer=peer: sorted(peer.ask("heard", "in")[0]) == said, f"{peer.kind} hears all")  # type: ignore[misc]
         # The graph: everybody's nodes, a participant for each, and then none of them.
