@@ -12,7 +12,7 @@ from docs.pages import ROOT, code, table_rows
 
 PAGE = "docs/robustness.md"
 SOURCE = ROOT / "src" / "roslet"
-ROOMS = ("names.py", "wire", "engine", "io", "node", "master")
+ROOMS = ("names", "wire", "engine", "io", "node", "master")
 # The ROS 2 wire is not in use yet.
 LATER = ("wire/rtps", "engine/rtps", "io/udp.py", "io/rtps")
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import threading
 from collections import deque
 
+from roslet.node.convert import message_of
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable
@@ -90,21 +92,8 @@ class Publisher:
         return self.convert(message)
 
     def convert(self, message: Any) -> Message:
-        """A message of this type from a dict, or from an equal message class. Raises TypeError."""
-        if isinstance(message, dict):
-            return self.type(**message)
-        if isinstance(message, self.type):
-            return message
-        own = self.type
-        equal = (getattr(message, "_md5sum", ""), getattr(message, "_type_hash", "")) == (
-            own._md5sum,
-            own._type_hash,
-        )
-        if equal and hasattr(message, "serialize"):
-            converted: Message = own.deserialize(message.serialize())
-            return converted
-        given = getattr(message, "_type", type(message).__name__)
-        raise TypeError(f"{self.topic} carries {own._type}, not {given}")
+        """A message of this type from what `message_of` takes. Raises TypeError."""
+        return message_of(self.type, message, f"{self.topic} carries")
 
     def _grow(self, size: int) -> None:
         self._view.release()

@@ -171,8 +171,7 @@ class Writer:
             if self._lifespan is not None:
                 change.expires = now + self._lifespan
             if kept:
-                if self._wanted is False and self.history.full(size, change.key):
-                    self._wanted = True
+                self._wanted = self._wanted or self.history.full(size, change.key)
                 self.history.add(change)
         if self._strangers:
             self._greet(sequence)

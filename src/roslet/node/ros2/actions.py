@@ -21,6 +21,7 @@ from roslet.engine.ros2.actions import (
     cancel_code,
 )
 from roslet.errors import CallTimeout, NodeClosed, RosletError
+from roslet.node.convert import message_of
 from roslet.node.future import Future
 from roslet.node.qos import QoS
 
@@ -228,11 +229,7 @@ class ActionServer:
     def _made(kind: Any, message: Any, fields: dict[str, Any]) -> Any:
         if message is None:
             return kind(**fields)
-        if isinstance(message, dict):
-            return kind(**message)
-        if not isinstance(message, kind):
-            raise TypeError(f"expected {kind.__name__}, not {type(message).__name__}")
-        return message
+        return message_of(kind, message, "expected")
 
     def _publish_status(self) -> None:
         message: Any = self._status.type()

@@ -201,7 +201,7 @@ class NodeParameters:
     def _changed(self, change: Change) -> None:
         # For nobody, the messages' classes need not be made: that would be much of a node's start.
         if self._events is not None and self._events.subscriber_count:
-            self._publish(self._events, change)
+            self._events.publish(self._event(change))
         for one in change.new + change.changed + change.deleted:
             if one.name == USE_SIM_TIME:
                 self._network.follow_clock(one.value is True)
@@ -216,15 +216,6 @@ class NodeParameters:
         event.changed_parameters = [to_parameter(one) for one in change.changed]
         event.deleted_parameters = [to_parameter(one) for one in change.deleted]
         return event
-
-    def _publish(self, events: Ros2Publisher, change: Change) -> None:
-        stamp = self._network.node.now()
-        event = message_of("ParameterEvent", node=self._network.name)
-        event.stamp.sec, event.stamp.nanosec = stamp.secs, stamp.nsecs
-        event.new_parameters = [to_parameter(one) for one in change.new]
-        event.changed_parameters = [to_parameter(one) for one in change.changed]
-        event.deleted_parameters = [to_parameter(one) for one in change.deleted]
-        events.publish(event)
 
     # -- what others ask; every request is answered, as rclpy answers it
 
