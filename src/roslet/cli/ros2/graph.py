@@ -67,7 +67,7 @@ class Ros2Graph(Graph):
         """Let the loop run, without callbacks."""
         self.node.reactor.run_until(lambda: self.node.is_shutdown, seconds, user=False)
 
-    def settle(self, least: float = LEAST) -> None:
+    def settle(self) -> None:
         """Wait until discovery has told all that it is going to tell; see the constants."""
         graph = self.net.graph
         begin = quiet_since = time.monotonic()
@@ -79,7 +79,7 @@ class Ros2Graph(Graph):
                 revision, quiet_since = graph.revision, now
             with self.node.reactor.lock:
                 complete = graph.complete()
-            settled = complete and now - quiet_since >= QUIET and now - begin >= least
+            settled = complete and now - quiet_since >= QUIET and now - begin >= LEAST
             if settled or now - begin >= MOST:
                 return
 
