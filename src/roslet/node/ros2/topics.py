@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from roslet.wire.rtps.data import Data
     from roslet.wire.rtps.endpoint_data import EndpointData
 
+# A sample that is longer has come in fragments, and is in memory of its own; others lie in the datagram's buffer.
+DATAGRAM = 65536
 # Bytes that a publisher's own buffer grows to; a larger message is gathered into a buffer of its own, which the writer
 # keeps without a further copy.
 MAX_BUFFER = 60_000
@@ -292,7 +294,7 @@ class Ros2Subscription(_Endpoint, Subscription):
         if size > self._max_message:
             self.node._count("message-too-large")
             return
-        if size <= MAX_BUFFER:
+        if size <= DATAGRAM:
             payload = bytearray(payload)  # the datagram's buffer is not ours
         elif size > LARGE:
             keep_large_blocks()
