@@ -390,7 +390,8 @@ class Writer:
         behind = [one for one in self.proxies.values() if one.reliable and one.acked < self.last]
         if not behind:
             return
-        if self._directed or len(behind) == 1:
+        if self._directed or len(behind) == 1 or 2 * len(behind) <= len(self.addresses):
+            # Whoever has everything would answer too.
             for one in behind:
                 if self._directed:
                     self._repairs.tell_skipped(one.guid, self.last)
