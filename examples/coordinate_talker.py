@@ -1,6 +1,5 @@
 """Publishes a point that moves, mros_comm_measure/Coordinate, on `ping`, and times its way back on `pong`.
 
-roslet master &
 python coordinate_listener.py &
 python coordinate_talker.py --rate 10
 """
@@ -17,10 +16,13 @@ from typing import Any
 
 import roslet
 
-# A type of one's own: loading its definition is all it takes.
+# A type of one's own: loading its definition is all it takes, on either network.
 Coordinate: Any = roslet.load(
     pathlib.Path(__file__).resolve().parent / "msgs" / "mros_comm_measure"
 ).mros_comm_measure.msg.Coordinate
+
+# Messages kept for the other side while it does something else; the pair checks that none is lost.
+DEPTH = 1000
 
 
 def coordinate(number: int) -> tuple[float, float, float]:
@@ -31,7 +33,7 @@ def coordinate(number: int) -> tuple[float, float, float]:
 def main() -> int:
     parser = argparse.ArgumentParser(description="A moving point on ping; round trips by way of pong.")
     parser.add_argument(
-        "--network", default="ros1://", help="default: ros1://, the master of $ROS_MASTER_URI"
+        "--network", default="ros2://", help="default: ros2://, which needs no master; or ros1://"
     )
     parser.add_argument("--rate", type=float, default=1.0, help="messages a second (default 1)")
     parser.add_argument("--count", type=int, default=0, help="end after so many messages (default 0: never)")
@@ -52,8 +54,8 @@ def main() -> int:
             else:
                 round_trips.append(time.perf_counter() - sent_at)
 
-        pong = node.subscribe("pong", Coordinate, back)
-        ping = node.publisher("ping", Coordinate)
+        pong = node.subscribe("pong", Coordinate, back, qos=DEPTH)
+        ping = node.publisher("ping", Coordinate, qos=DEPTH)
         ping.wait_for_subscribers(timeout=10.0)
         pong.wait_for_publishers(timeout=2.0)
 
