@@ -58,6 +58,7 @@ def main() -> int:
             return bool(arguments.count) and heard >= arguments.count
 
         node.subscribe("ping", Coordinate, callback, qos=DEPTH)
+        report(final=False)  # ready
         end = None if arguments.seconds is None else time.monotonic() + arguments.seconds
         try:
             while not node.is_shutdown and not done() and (end is None or time.monotonic() < end):

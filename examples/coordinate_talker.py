@@ -37,9 +37,13 @@ def main() -> int:
     )
     parser.add_argument("--rate", type=float, default=1.0, help="messages a second (default 1)")
     parser.add_argument("--count", type=int, default=0, help="end after so many messages (default 0: never)")
+    parser.add_argument(
+        "--subscribers", type=int, default=1, help="wait for so many listeners at the start (default 1)"
+    )
     parser.add_argument("--json", action="store_true", help="report every second, in JSON lines")
     arguments = parser.parse_args()
 
+    began = time.monotonic()
     with roslet.Node("talker", network=arguments.network) as node:
         under_way: dict[int, float] = {}
         round_trips: list[float] = []
@@ -56,11 +60,13 @@ def main() -> int:
 
         pong = node.subscribe("pong", Coordinate, back, qos=DEPTH)
         ping = node.publisher("ping", Coordinate, qos=DEPTH)
-        ping.wait_for_subscribers(timeout=10.0)
+        ping.wait_for_subscribers(arguments.subscribers, timeout=10.0)
         pong.wait_for_publishers(timeout=2.0)
+        found = {"found": time.monotonic() - began, "subscribers": ping.subscriber_count}
 
         def report(number: int, final: bool) -> None:
-            figures = {"sent": number, "returned": len(round_trips), "altered": altered, "final": final}
+            figures: dict[str, Any] = {"sent": number, "returned": len(round_trips), "altered": altered}
+            figures.update(found, final=final)
             median = statistics.median(round_trips) if round_trips else None
             if arguments.json:
                 more = {"round_trips": round_trips} if final else {"median": median}

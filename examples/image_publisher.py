@@ -48,7 +48,8 @@ def main() -> int:
     with roslet.Node("camera", network=arguments.network) as node:
         image = node.publisher("image", "sensor_msgs/Image")
         image.wait_for_subscribers(timeout=10.0)
-        message: Any = image.type(height=height, width=width, encoding="rgb8", step=3 * width)
+        kind: Any = image.type
+        message = kind(height=height, width=width, encoding="rgb8", step=3 * width)
         message.header.frame_id = "camera"
         rate = node.rate(arguments.rate)
         number = 0
