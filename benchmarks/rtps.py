@@ -41,7 +41,7 @@ class End:
 
     def __init__(self, writes: str, reads: str, sink) -> None:  # type: ignore[no-untyped-def]
         self.reactor = Reactor()
-        self.domain = Domain(self.reactor, lambda event: None, localhost=True)
+        self.domain = Domain(self.reactor, lambda event: None)
         participant = self.domain.participant
         with self.reactor.lock:
             self.writer = participant.create_writer(writes, TYPE, QOS, self.reactor.now())

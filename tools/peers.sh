@@ -29,8 +29,8 @@ wheels() { # NAME REQUIREMENT...
     fi
 }
 
-wheels kilted ros-rclpy==9.1.2 ros-rmw-fastrtps-cpp==9.3.3 ros-common-interfaces==5.5.1
-wheels jazzy ros-jazzy-rclpy==7.1.6 ros-jazzy-rmw-fastrtps-cpp==8.4.3 ros-jazzy-common-interfaces==5.3.6
+wheels kilted ros-rclpy==9.1.2 ros-rmw-fastrtps-cpp==9.3.3 ros-common-interfaces==5.5.1 ros-test-msgs==2.3.0
+wheels jazzy ros-jazzy-rclpy==7.1.6 ros-jazzy-rmw-fastrtps-cpp==8.4.3 ros-jazzy-common-interfaces==5.3.6 ros-test-msgs==2.0.3
 wheels cyclone cyclonedds==11.0.1
 
 want=$(sha256sum <tools/ros1_definitions.sh | cut -d' ' -f1)

@@ -11,6 +11,7 @@ import pytest
 
 import roslet
 from nodes import Nodes, Raw, descriptors, ports, ros1, serve, string_subscriber, wait_until
+from roslet.io.select import reactor
 from roslet.wire.tcpros import MAX_FRAME, MAX_HEADER, emit_header
 
 STRING = "std_msgs/String"
@@ -184,7 +185,12 @@ def fake_accept_while_serving(fake: FakePublisher) -> Raw:
     import threading
 
     made: list[Raw] = []
-    thread = threading.Thread(target=lambda: made.append(fake.accept()))
+
+    def accept() -> None:
+        made.append(fake.accept())
+        reactor().wake()  # it has looked at `made` already, when the header came
+
+    thread = threading.Thread(target=accept)
     thread.start()
     wait_until(lambda: made, "the subscriber connects again")
     thread.join()

@@ -206,11 +206,14 @@ def liveliness(pair: Pair) -> None:
     disconnect(pair, topic)
 
 
-def keep_all(pair: Pair, size: int = 1000, count: int = 2000) -> None:
-    """Reliable and keep-all: as fast as it goes, and nothing is lost."""
+def keep_all(pair: Pair, nap: float, size: int = 1000, count: int = 1000) -> None:
+    """Reliable and keep-all: as fast as it goes, and nothing is lost, also where the listener needs `nap` for each."""
     topic = name()
     qos = {"history": "keep_all"}
-    connect(pair, topic, STRING, qos, qos, size)
+    pair.listener.ask("subscription", topic, topic, STRING, size, qos, nap)
+    pair.talker.ask("publisher", topic, topic, STRING, qos)
+    pair.talker.wait(1, "matched", topic)
+    pair.listener.wait(1, "matched", topic)
     pair.talker.ask("publish", topic, 0, count, size, 0.0)
     pair.listener.wait([list(range(count)), []], "heard", topic)
     disconnect(pair, topic)
@@ -228,7 +231,7 @@ def calls(pair: Pair) -> None:
         pair.talker.wait(True, "ready", service)
         for i in range(3):
             assert pair.talker.ask("call", service, i, 1, 0, 5.0) == []
-        # More at once than the history of the endpoints, 10, would not be asked of anybody.
+        # As many at once as the history of a server of rclpy holds.
         for i in range(5):
             assert pair.talker.ask("call", service, 10 * i, 10, 0, 5.0) == []
         if type_name == "sensor_msgs/srv/SetCameraInfo":

@@ -54,8 +54,9 @@ def test_liveliness_that_is_not_asserted_is_lost_and_regained(pair: Pair) -> Non
     exchange.liveliness(pair)
 
 
-def test_keep_all_loses_nothing(pair: Pair) -> None:
-    exchange.keep_all(pair)
+@pytest.mark.parametrize("nap", [0.0, 0.002], ids=["quick", "slow"])
+def test_keep_all_loses_nothing_for_a_listener_that_is(pair: Pair, nap: float) -> None:
+    exchange.keep_all(pair, nap)
 
 
 def test_every_call_gets_its_own_answer(pair: Pair) -> None:

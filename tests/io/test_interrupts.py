@@ -33,9 +33,9 @@ def interrupt() -> None:
     os.kill(os.getpid(), signal.SIGINT)
 
 
-def a_moment() -> None:
-    """Instructions, so that a signal that is to be raised is raised."""
-    end = time.monotonic() + 0.02
+def go_on(seconds: float) -> None:
+    """Instructions of the user, between which a Ctrl-C may be raised."""
+    end = time.monotonic() + seconds
     while time.monotonic() < end:
         pass
 
@@ -46,10 +46,10 @@ def test_it_waits_for_the_lock_to_be_given_back(loop: Reactor) -> None:
         with loop.lock:
             with loop.lock:
                 interrupt()
-                a_moment()
-            a_moment()
+                go_on(0.02)
+            go_on(0.02)
             done.append("whole")
-        a_moment()
+        go_on(10)
         done.append("too late")
     assert done == ["whole"]
 
@@ -60,7 +60,7 @@ def test_it_waits_for_a_function_of_the_loop(loop: Reactor) -> None:
     def control() -> None:
         if loop.in_loop and threading.current_thread() is threading.main_thread():
             interrupt()
-            a_moment()
+            go_on(0.02)
             done.append("whole")
         else:
             loop.call_soon(control)  # the background thread had the loop
@@ -102,7 +102,7 @@ def test_it_is_raised_in_a_callback_of_the_user(loop: Reactor) -> None:
     def callback() -> None:
         reached.append("callback")
         interrupt()
-        a_moment()
+        go_on(10)
         reached.append("too late")
 
     loop.call_soon(callback, user=True)
@@ -125,7 +125,7 @@ def test_what_another_thread_holds_does_not_put_it_off(loop: Reactor) -> None:
     try:
         with pytest.raises(KeyboardInterrupt):
             interrupt()
-            a_moment()
+            go_on(5)
         assert not leave.is_set()
     finally:
         leave.set()
@@ -138,9 +138,7 @@ def test_a_loop_that_hangs_can_be_interrupted_all_the_same(
     monkeypatch.setattr(interrupts, "MOST", 3)
     with pytest.raises(KeyboardInterrupt), loop.lock:
         interrupt()
-        end = time.monotonic() + 10
-        while time.monotonic() < end:
-            pass
+        go_on(10)
 
 
 def test_a_handler_of_the_program_stays(loop: Reactor) -> None:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from types import TracebackType
 
+    from typing_extensions import Self
+
     from roslet.cli.parameters import ParameterStore
 
 
@@ -39,7 +41,7 @@ class Graph:
     def types(self) -> dict[str, str]:
         raise NotImplementedError
 
-    def __enter__(self) -> Graph:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(

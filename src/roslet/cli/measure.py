@@ -32,6 +32,12 @@ class Meter:
         self.recent += 1
         self.arrivals.append((now, size))
 
+    def figures(self, what: str, now: float) -> dict[str, Any]:
+        """What one report of that command says."""
+        if what == "bw":
+            return self.bandwidth(now)
+        return self.rate() if what == "hz" else self.delay()
+
     def delayed(self, seconds: float) -> None:
         """A message has come that was stamped so long ago."""
         self.messages += 1
@@ -152,7 +158,7 @@ def measure(arguments: argparse.Namespace, what: str) -> int:
                 meter.delayed(now - stamp_of(reader.read(raw)))
 
             session.listen(
-                meter.topic, arrived_with_stamp if what == "delay" else arrived, 1000, arguments.qos
+                meter.topic, arrived_with_stamp if what == "delay" else arrived, 1000, arguments.qos, False
             )
         begin = time.monotonic()
         end = math.inf if arguments.limit is None else begin + arguments.limit
@@ -161,10 +167,7 @@ def measure(arguments: argparse.Namespace, what: str) -> int:
             now = time.monotonic()
             lines = []
             for meter in meters:
-                if what == "bw":
-                    figures = meter.bandwidth(now)
-                else:
-                    figures = meter.rate() if what == "hz" else meter.delay()
+                figures = meter.figures(what, now)
                 if arguments.json:
                     print(json_text({"time": round(now - begin, 3), **figures}), flush=True)
                 else:

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from types import TracebackType
 
+    from typing_extensions import Self
+
     from roslet.cli.reader import Reader
     from roslet.node.node import Node
     from roslet.node.topics import Publisher
@@ -34,7 +36,7 @@ class Session:
     node: Node
     graph: Graph
 
-    def __enter__(self) -> Session:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
@@ -46,9 +48,12 @@ class Session:
         """The node goes."""
         raise NotImplementedError
 
-    def listen(self, topic: str, callback: Callable[[Any], object], depth: int, qos: Sequence[str]) -> Tap:
-        """Call `callback(RawMessage)` for each message of a topic, whatever its type. `qos` is what --qos said. On ROS 2
-        nobody can subscribe before the type is known: that waits until the topic is there."""
+    def listen(
+        self, topic: str, callback: Callable[[Any], object], depth: int, qos: Sequence[str], kept: bool = True
+    ) -> Tap:
+        """Call `callback(RawMessage)` for each message of a topic, whatever its type. `qos` is what --qos said; without
+        `kept` messages of before are not wanted. On ROS 2 nobody can subscribe before the type is known: that waits until
+        the topic is there."""
         raise NotImplementedError
 
     def reader(self) -> Reader:

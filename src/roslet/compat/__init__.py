@@ -4,6 +4,5 @@
 `roslib` and `rosgraph` are what such a program finds under these names; beside them stands what they share: `session`
 (the one node that a rospy program has), `messages` (what rospy programs expect of a message class), `logs`, `callbacks`.
 
-The folder `rclpy` is the same for ROS 2: `interfaces` is what its programs expect of a message class, `ros_arguments` what
-they are told on the command line.
+The folder `rclpy` is the same for ROS 2: `interfaces` is what its programs expect of a message class.
 """

@@ -53,6 +53,10 @@ class Node(GraphApi):
     Raises InvalidName, Unsupported, OSError or Unreachable where no port can be had.
     """
 
+    # Whether the node has on ROS 2 what every node has: its log, its parameters' services and events, descriptions of its
+    # types. One that only looks, such as a command's, costs its peers less without.
+    _seen = True
+
     def __init__(
         self,
         name: str,

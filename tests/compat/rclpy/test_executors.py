@@ -182,9 +182,14 @@ def test_a_coroutine_goes_on_as_soon_as_what_it_awaits_is_set_elsewhere(executor
 
 
 def test_a_waiting_executor_turns_no_wheels(executor: Executor, monkeypatch: pytest.MonkeyPatch) -> None:
-    looks: list[int] = []
+    looks: list[bool] = []
     look = executor._look
-    monkeypatch.setattr(executor, "_look", lambda: (looks.append(1), look())[1])
+
+    def counted() -> bool:
+        looks.append(look())
+        return looks[-1]
+
+    monkeypatch.setattr(executor, "_look", counted)
 
     async def waits() -> None:
         await Future()

@@ -12,6 +12,7 @@ from engine.rtps.hand import (
     READER,
     SOURCE,
     SPDP_WRITER,
+    SUBSCRIPTIONS_READER,
     SUBSCRIPTIONS_WRITER,
     WRITER,
 )
@@ -404,9 +405,18 @@ def test_a_request_for_fragments_that_are_not_there_is_no_flood() -> None:
         sent += victim.turn()
     # Fragments 2 and 3, and the heartbeat behind them, for each.
     assert len(sent) <= 3 * 19
-    request = hand.nack_frag(READER, writer.entity_id, 77, 1, 256, everything, 99)
+
+
+@pytest.mark.parametrize("sequence", [2, 77, LAST])
+def test_fragments_of_a_sample_that_is_yet_to_be_written_are_not_declared_a_gap(sequence: int) -> None:
+    victim, writer = offered(fragment_size=1000)
+    writer.write(b"\0\1\0\0" + bytes(2500), 0.0)
+    victim.now += 1.0
+    victim.turn()
+    request = hand.nack_frag(READER, writer.entity_id, sequence, 1, 32, (0xFFFFFFFF,), 99)
     victim.participant.receive_datagram(hand.message(request), SOURCE, victim.now)
-    assert len(victim.turn()) == 1
+    assert victim.turn() == []
+    assert victim.counters == {"nack-frag-of-unwritten-sample": 1}
 
 
 # -- discovery
@@ -675,3 +685,71 @@ def test_acknowledgements_for_anyone_are_for_nobody() -> None:
     assert not writer.acknowledged(1)
     victim.take(hand.message(hand.heartbeat(PUBLICATIONS_WRITER, 1, 0, 1, PUBLICATIONS_READER)))
     assert victim.counters == {"acknack-of-unmatched-reader": 1}
+
+
+# -- spoofed sources: RTPS has no authentication. These say what another address cannot do; docs/ros2-scaling.md what it can.
+
+ELSEWHERE = ("10.0.0.66", 7410)
+
+
+def test_another_address_cannot_redirect_or_end_a_participant() -> None:
+    victim, reader = met()
+    before = victim.participant.spdp.remotes[PREFIX].metatraffic
+    status = hand.parameters(hand.parameter(0x70, PREFIX + WRITER), hand.parameter(0x71, b"\0\0\0\3"))
+    disposal = hand.data(
+        PUBLICATIONS_WRITER, 2, hand.payload(hand.parameter(0x5A, PREFIX + WRITER)), qos=status, flags=8
+    )
+    away = hand.endpoint(PREFIX + WRITER, "t", "T", "<", hand.parameter(0x2F, hand.locator("10.0.0.66", 7)))
+    lies = [
+        hand.spdp(PREFIX, "10.0.0.66", "<", 2),
+        hand.departure(),
+        hand.message(disposal),
+        sedp(away, 2),
+        hand.message(hand.heartbeat(PUBLICATIONS_WRITER, LAST, LAST, 9)),
+        hand.message(hand.gap(PUBLICATIONS_WRITER, 1, hand.number_set(LAST, 0, ()))),
+        hand.message(hand.data_frag(PUBLICATIONS_WRITER, 2, 1, 1, 8, 8, bytes(8))),
+        hand.message(
+            hand.acknack(SUBSCRIPTIONS_READER, SUBSCRIPTIONS_WRITER, hand.number_set(LAST, 0, ()), 9)
+        ),
+        hand.message(hand.info_src(PREFIX), hand.data(SPDP_WRITER, 3, b""), prefix=b"\7" * 12),
+    ]
+    victim.take(*lies, source=ELSEWHERE)
+    assert victim.counters == {"discovery-from-another-address": len(lies) + 1}  # one has a heartbeat, too
+    assert victim.participant.spdp.remotes[PREFIX].metatraffic == before
+    assert reader.proxies[PREFIX + WRITER].addresses == ((HOST, 7411),)
+    assert victim.of(events.EndpointUnmatched) == victim.of(events.ParticipantLost) == []
+    # And what the real one says is heard.
+    victim.take(sedp(hand.endpoint(PREFIX + b"\0\0\x12\3"), 2), hand.departure())
+    assert len(victim.of(events.EndpointMatched)) == 2
+    assert len(victim.of(events.ParticipantLost)) == 1
+
+
+def test_another_address_cannot_keep_a_dead_participant_alive() -> None:
+    victim, _ = met()
+    for _ in range(25):
+        victim.now += 1.0
+        victim.take(hand.message(hand.heartbeat(WRITER, 1, 0, 1)), source=ELSEWHERE)
+    assert len(victim.of(events.ParticipantLost)) == 1
+
+
+def test_a_participant_that_has_moved_is_found_again_within_half_its_lease() -> None:
+    victim, reader = met()
+    sequence = 1
+    while victim.now < 10.5:
+        sequence += 1
+        victim.now += 1.5
+        victim.take(hand.spdp(PREFIX, "10.0.0.66", "<", sequence), source=ELSEWHERE)
+    assert victim.participant.spdp.remotes[PREFIX].metatraffic == (("10.0.0.66", 7410),)
+    assert reader.proxies[PREFIX + WRITER].addresses == (("10.0.0.66", 7411),)
+    assert victim.of(events.ParticipantLost) == []
+
+
+def test_a_participant_speaks_from_each_of_its_addresses_and_from_loopback() -> None:
+    victim, _ = met()
+    more = hand.parameter(0x31, hand.locator("172.16.0.9", 7411))
+    victim.take(hand.spdp(PREFIX, HOST, "<", 2, more))
+    for number, host in enumerate((HOST, "172.16.0.9", "127.0.0.1")):
+        said = hand.endpoint(PREFIX + bytes((0, 1, number, 3)))
+        victim.take(sedp(said, 2 + number), source=(host, 55555))
+    assert victim.counters == {}
+    assert len(victim.of(events.EndpointMatched)) == 4

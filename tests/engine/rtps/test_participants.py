@@ -586,3 +586,21 @@ def test_an_endpoint_may_have_a_locator_of_its_own() -> None:
     assert matched(network, writer, reader)
     assert writer.proxies[reader.data.guid].addresses == ((other.address, 9999),)
     assert writer.proxies[reader.data.guid].data.unicast == (place,)
+
+
+def test_a_reader_that_has_said_nothing_yet_is_told_where_we_are_before_each_of_the_first_samples() -> None:
+    """Cyclone drops samples of a writer whose heartbeat it has not seen; the first may have come before the announcement."""
+    network = Network()
+    one, _, writer, _ = pair(network, RELIABLE, RELIABLE)
+    assert network.run(5, lambda: bool(writer.proxies))
+    one.participant.datagrams_to_send(network.now)
+    sent = []
+    for number in range(3):
+        writer.write(body(number), network.now)
+        sent += [b"".join([bytes(part) for part in parts]) for parts, _ in one.participant.datagrams_to_send(network.now)]
+    # A datagram with INFO_DST and HEARTBEAT, one with INFO_TS and DATA, and so on.
+    assert [(datagram[20], datagram[36] if datagram[20] == 0x0E else datagram[32]) for datagram in sent] == [
+        (0x0E, 0x07),
+        (0x09, 0x15),
+    ] * 3
+    assert [datagram[36 + 24] for datagram in sent[::2]] == [0, 1, 2]  # the last number at each

@@ -94,17 +94,18 @@ def test_a_move_is_told_to_all_under_a_new_number() -> None:
     peer.take_events()
     us.datagrams_to_send(0.0)
     moved = us.spdp.own.replace(metatraffic_unicast=(locator.udp4("10.0.1.7", 7410),))
-    us.move(moved, (("239.255.0.1", 7400), ("10.0.5.5", 7410)), (("10.0.1.7", 24),), 10.0)
-    sent = announcements(us, 10.0)
+    us.move(moved, (("239.255.0.1", 7400), ("10.0.5.5", 7410)), (("10.0.1.7", 24),), 10.5)
+    sent = announcements(us, 10.5)
     assert [to for _, to in sent] == [(("10.0.1.2", 7410),), (("239.255.0.1", 7400), ("10.0.5.5", 7410))]
-    peer.receive_datagram(sent[0][0], ("10.0.1.7", 7411), 10.0)
+    # It is believed once it was silent for half its lease: until then anybody could say so.
+    peer.receive_datagram(sent[0][0], ("10.0.1.7", 7411), 10.5)
     (event,) = peer.take_events()
     assert isinstance(event, events.ParticipantDiscovered)
     assert event.data == moved
     assert peer.spdp.remotes[us.guid_prefix].metatraffic == (("10.0.1.7", 7410),)
     # And anew as quickly as at the start.
-    assert announcements(us, 10.09) == []
-    assert len(announcements(us, 10.11)) == 1
+    assert announcements(us, 10.59) == []
+    assert len(announcements(us, 10.61)) == 1
 
 
 def test_a_peer_that_is_only_heard_from_elsewhere_is_sent_to_there() -> None:

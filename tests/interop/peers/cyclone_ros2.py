@@ -374,9 +374,9 @@ def taking(endpoint, sink):
     threading.Thread(target=take, daemon=True).start()
 
 
-def subscription(key, topic, type_name, size, qos):
+def subscription(key, topic, type_name, size, qos, nap=0.0):
     told = facts[key] = []
-    inbox = inboxes[key] = Inbox(type_name, size)
+    inbox = inboxes[key] = Inbox(type_name, size, nap)
     made = Topic(participant, "rt" + topic, TYPES[type_name])
     reader = DataReader(participant, made, qos=profile(qos), listener=Watching(told))
     endpoint = endpoints[key] = Endpoint(reader, type_name)
@@ -508,16 +508,14 @@ def begin():
 def mortal(name):
     """As in roslet_ros2.py."""
     begin()
-    last = [-1]
     qos = profile({})
     reader = DataReader(participant, Topic(participant, "rt/to", UInt32), qos=qos)
     writer = DataWriter(participant, Topic(participant, "rt/from", String), qos=qos)
     while True:
         for one in reader.take(100):
             if one.sample_info.valid_data:
-                last[0] = one.data
-        writer.write(String(data="%d %d" % (os.getpid(), last[0])))
-        time.sleep(0.02)
+                writer.write(String(data="%d" % os.getpid()))
+        time.sleep(0.01)
 
 
 COMMANDS = {
@@ -526,6 +524,7 @@ COMMANDS = {
     "publish": publish,
     "assert_liveliness": lambda key: None,
     "heard": lambda key: inboxes[key].told(),
+    "last": lambda key: inboxes[key].numbers[-1:],
     "events": lambda key: facts[key],
     "matched": matched,
     "close": close,

@@ -91,9 +91,9 @@ def liveliness(told, status):
         told.append(["lost"])
 
 
-def subscription(key, topic, type_name, size, qos):
+def subscription(key, topic, type_name, size, qos, nap=0.0):
     told = facts[key] = []
-    inbox = inboxes[key] = Inbox(type_name, size)
+    inbox = inboxes[key] = Inbox(type_name, size, nap)
     events = SubscriptionEventCallbacks(
         incompatible_qos=lambda status: told.append(["incompatible", policy(status)]),
         deadline=lambda status: told.append(["deadline"]),
@@ -214,17 +214,19 @@ def begin(name, namespace="/"):
     threading.Thread(target=spin, daemon=True).start()
 
 
+def close_node():
+    node.destroy_node()
+    rclpy.shutdown()
+
+
 def mortal(name):
-    """A node that lives until it is killed: hears std_msgs/msg/UInt32 on /to, and says on /from, ten times a second, its
-    pid and what it heard last, or -1."""
+    """A node that lives until it is killed. Once it hears std_msgs/msg/UInt32 on /to, it says its pid on /from."""
     from std_msgs.msg import String, UInt32
 
     rclpy.init()
     made = rclpy.create_node(name)
-    last = [-1]
-    made.create_subscription(UInt32, "/to", lambda message: last.__setitem__(0, message.data), 10)
     talker = made.create_publisher(String, "/from", 10)
-    made.create_timer(0.02, lambda: talker.publish(String(data="%d %d" % (os.getpid(), last[0]))))
+    made.create_subscription(UInt32, "/to", lambda _: talker.publish(String(data="%d" % os.getpid())), 10)
     rclpy.spin(made)
 
 
@@ -234,6 +236,7 @@ COMMANDS = {
     "publish": publish,
     "assert_liveliness": lambda key: endpoints[key][0].assert_liveliness(),
     "heard": lambda key: inboxes[key].told(),
+    "last": lambda key: inboxes[key].numbers[-1:],
     "events": lambda key: facts[key],
     "matched": matched,
     "close": close,
@@ -251,6 +254,7 @@ COMMANDS = {
     "counts": lambda topic: [node.count_publishers(topic), node.count_subscribers(topic)],
     "service_counts": lambda name: [node.count_services(name), node.count_clients(name)],
     "process": process,
+    "close_node": close_node,
     "mortal": lambda name: fork(lambda: mortal(name)),
     "kill": kill,
 }

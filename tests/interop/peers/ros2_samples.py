@@ -4,6 +4,8 @@
 one a message is, so that losses and repetitions show. Enough of it for rclpy, cyclonedds and roslet alike.
 """
 
+import time
+
 EPOCH = 1_700_000_000
 
 
@@ -169,9 +171,11 @@ def differences(value, message, path=""):
 
 
 class Inbox:
-    """What a subscription has heard: the numbers of the messages, and where one was not as expected."""
+    """What a subscription has heard: the numbers of the messages, and where one was not as expected. `nap`: seconds that it
+    takes for each."""
 
-    def __init__(self, type_name, size):
+    def __init__(self, type_name, size, nap=0.0):
+        self.nap = nap
         self.type_name = type_name
         self.size = size
         self.numbers = []
@@ -186,6 +190,8 @@ class Inbox:
             self.wrong.append(repr(error))
             return
         self.numbers.append(i)
+        if self.nap:
+            time.sleep(self.nap)
 
     def told(self):
         return [list(self.numbers), self.wrong]

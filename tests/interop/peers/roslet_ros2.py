@@ -20,14 +20,18 @@ from ros2_samples import QOS, Inbox, build, differences, expected, request, resp
 
 import roslet
 from roslet.gen.runtime import message_class
+from roslet.io.ros2 import Ros2Shell
+from roslet.io.select import reactor
+from roslet.names import parse_ros2_network
 from roslet.node import events as kinds
-from roslet.node.ros2.qos import from_dds
+from roslet.node.ros2.qos import from_dds, to_dds
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent / "ros2_ws"
 
 endpoints = {}
 inboxes = {}
 facts = {}
+members = []  # of a crowd
 node = None
 
 
@@ -67,14 +71,8 @@ def publisher(key, topic, type_name, qos):
 
 
 def subscription(key, topic, type_name, size, qos, nap=0.0):
-    inbox = inboxes[key] = Inbox(type_name, size)
-
-    def heard(message):
-        inbox(message)
-        if nap:
-            time.sleep(nap)
-
-    watch(key, node.subscribe(topic, type_name, heard, qos=profile(qos)))
+    inbox = inboxes[key] = Inbox(type_name, size, nap)
+    watch(key, node.subscribe(topic, type_name, inbox, qos=profile(qos)))
 
 
 def publish(key, first, count, size, pause):
@@ -180,28 +178,33 @@ def tables():
 
 
 def keyed(key, topic, type_name):
-    """A reader of a keyed topic, which a node does not have: of the participant itself."""
+    """A reader of a keyed topic, which a node does not have: the participant's own. It tells of samples by their payload, and
+    of instances by their state. The key is a string, and the first field; Cyclone sends no key hash."""
+    from roslet.engine.rtps.events import InstanceChanged
     from roslet.wire.rtps import qos as policies
 
-    inbox = inboxes[key] = []
+    heard = inboxes[key] = []
     shell = node._network.shell
 
-    def sink(proxy, value, when):
-        status = 0
-        for pid, data in getattr(value, "inline_qos", None) or ():
-            if pid == 0x71:  # PID_STATUS_INFO
-                status = data[3]
-        inbox.append([bool(value.flags & 4), status, bytes(value.payload).hex()])
+    def name_of(value):
+        body = bytes(value.payload)
+        return body[8 : 8 + body[4] - 1]
+
+    def happened(event):
+        if isinstance(event, InstanceChanged):
+            heard.append(["instance", event.state, event.key.decode()])
 
     with node.reactor.lock:
-        shell.participant.create_reader(
+        reader = shell.participant.create_reader(
             "rt" + topic,
             type_name,
-            policies.Qos(reliability=(policies.RELIABLE, 10**8)),
+            policies.Qos(reliability=(policies.RELIABLE, 10**8), history=(policies.KEEP_ALL, 1)),
             node.reactor.now(),
             keyed=True,
-            sink=sink,
+            key_of=name_of,
+            sink=lambda proxy, value, when: heard.append(["sample", bytes(value.payload).hex()]),
         )
+        shell.handle(reader.entity_id, happened)
         shell.flush()
 
 
@@ -212,14 +215,47 @@ def begin(name, namespace="", network=None):
     node.start()
 
 
+class Member:
+    """One of a crowd: a participant of its own with a node, a writer and a reader of /crowd. It is made below roslet.Node, whose
+    parameter services would be two thousand endpoints more for each participant of a crowd of fifty."""
+
+    def __init__(self, number):
+        self.number = number
+        self.heard = []
+        name, kind = "crowd_%d" % number, message_class("ros2", "std_msgs/msg/UInt32")
+        self.shell = Ros2Shell(reactor(), parse_ros2_network(None, os.environ), "/" + name, print)
+        self.payload = kind(data=number).serialize()
+        with self.shell.reactor.lock:
+            now, context = self.shell.reactor.now(), self.shell.context
+            handle = context.add_node(name, "/", now)
+            topic = ("rt/crowd", "std_msgs::msg::dds_::UInt32_", to_dds(roslet.QoS()), kind._type_hash, now)
+            self.writer = context.create_writer(handle, *topic)
+            self.reader = context.create_reader(handle, *topic, sink=self.hear)
+            self.shell.flush()
+
+    def hear(self, proxy, value, when):
+        self.heard.append(int.from_bytes(bytes(value.payload[4:8]), "little"))
+
+    def publish(self):
+        with self.shell.reactor.lock:
+            self.writer.write(self.payload, self.shell.reactor.now())
+            self.shell.flush()
+
+
+def crowd(first, count):
+    members.extend(Member(number) for number in range(first, first + count))
+
+
+def crowd_matched():
+    """How many readers and how many writers each has matched with, each number once. Its own are not among them."""
+    return sorted({len(one.writer.proxies) for one in members} | {len(one.reader.proxies) for one in members})
+
+
 def mortal(name):
-    """A node that lives until it is killed: hears std_msgs/msg/UInt32 on /to, and says on /from, fifty times a second, its
-    pid and what it heard last, or -1."""
-    last = [-1]
+    """A node that lives until it is killed. Once it hears std_msgs/msg/UInt32 on /to, it says its pid on /from."""
     made = roslet.Node(name)
-    made.subscribe("/to", "std_msgs/msg/UInt32", lambda message: last.__setitem__(0, message.data))
     talker = made.publisher("/from", "std_msgs/msg/String")
-    made.timer(0.02, lambda: talker.publish(data="%d %d" % (os.getpid(), last[0])))
+    made.subscribe("/to", "std_msgs/msg/UInt32", lambda _: talker.publish(data="%d" % os.getpid()))
     made.spin()
 
 
@@ -229,6 +265,7 @@ COMMANDS = {
     "publish": publish,
     "assert_liveliness": lambda key: endpoints[key].assert_liveliness(),
     "heard": lambda key: inboxes[key].told(),
+    "last": lambda key: inboxes[key].numbers[-1:],
     "events": lambda key: facts[key],
     "matched": matched,
     "close": lambda key: endpoints.pop(key).close(),
@@ -248,6 +285,11 @@ COMMANDS = {
     "heard_keyed": lambda key: inboxes[key],
     "process": process,
     "tables": tables,
+    "crowd": crowd,
+    "crowd_matched": crowd_matched,
+    "crowd_publish": lambda: [one.publish() for one in members] and None,
+    "crowd_heard": lambda: [sorted(one.heard) for one in members],
+    "crowd_close": lambda: [one.shell.close() for one in members] and None,
     "close_node": lambda: node.close(),
     "mortal": lambda name: fork(lambda: mortal(name)),
     "kill": kill,

@@ -40,7 +40,9 @@ class Ros1Session(Session):
         self.graph.close()
         self.node.close()
 
-    def listen(self, topic: str, callback: Callable[[Any], object], depth: int, qos: Sequence[str]) -> Tap:
+    def listen(
+        self, topic: str, callback: Callable[[Any], object], depth: int, qos: Sequence[str], kept: bool = True
+    ) -> Tap:
         fields = {"depth": depth, **qos_fields(qos)}
         return Ros1Tap(self.node.subscribe(topic, "*", callback, qos=QoS(**fields)))
 

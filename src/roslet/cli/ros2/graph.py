@@ -29,13 +29,12 @@ QUIET = 0.2
 MOST = 1.5
 # Seconds between two looks.
 LOOK = 0.02
-# What keeps a command's node from being heard of: nobody needs its log, its parameters and its types.
-_SILENT = (
-    "--ros-args",
-    "--disable-rosout-logs",
-    "-p",
-    "start_type_description_service:=false",
-)
+
+
+class Looker(Node):
+    """A node without log, parameter services and the like: nobody wants to know anything of a command's node."""
+
+    _seen = False
 
 
 class Ros2Graph(Graph):
@@ -45,7 +44,7 @@ class Ros2Graph(Graph):
     service_titles = (("nodes", "Servers"), ("clients", "Clients"), ("type_hash", "Hash"))
 
     def __init__(self, network: str, name: str = "ask") -> None:
-        self.node = Node("_roslet_" + name, network=network, anonymous=True, arguments=_SILENT)
+        self.node = Looker("_roslet_" + name, network=network, anonymous=True)
         self.network = self.node.network
         self._seen = -1
         self._endpoints: list[EndpointInfo] = []
@@ -145,10 +144,13 @@ class Ros2Graph(Graph):
     def endpoint_rows(self, endpoints: list[dict[str, Any]], verbose: bool) -> list[tuple[str, ...]]:
         rows: list[tuple[str, ...]] = []
         for one in endpoints:
-            rows.append((one["node"], one["type"], qos_text(one["qos"], verbose)))
             if verbose:
-                rows.append(("", "type hash", one["type_hash"] or "not told"))
+                rows.append((one["node"], "type", one["type"]))
+                rows.append(("", "hash", one["type_hash"] or "not told"))
                 rows.append(("", "gid", one["gid"]))
+                rows.append(("", "QoS", qos_text(one["qos"], verbose)))
+            else:
+                rows.append((one["node"], one["type"], qos_text(one["qos"])))
         return rows
 
     def service_type(self, name: str) -> str:

@@ -21,9 +21,7 @@ _SEND_GOAL = ACTION + "send_goal"
 
 def actions_of(endpoints: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
     """Of services by name: the actions that they belong to, each with the endpoints of its send_goal."""
-    return {
-        name[: -len(_SEND_GOAL)]: found for name, found in endpoints.items() if name.endswith(_SEND_GOAL)
-    }
+    return {name[: -len(_SEND_GOAL)]: found for name, found in endpoints.items() if name.endswith(_SEND_GOAL)}
 
 
 def action_type(one: EndpointInfo) -> str:
@@ -41,7 +39,9 @@ def describe(graph: Ros2Graph, name: str) -> dict[str, Any]:
     vendor, host = participant_of(graph, infos[0].participant)
 
     def of(channel: str, writers: bool) -> list[EndpointInfo]:
-        found = [one for part in graph.of(channel, writers).values() for one in part if full_name(one) == name]
+        found = [
+            one for part in graph.of(channel, writers).values() for one in part if full_name(one) == name
+        ]
         return sorted(found, key=lambda one: one.name)
 
     def rows(channel: str, writers: bool, key: str) -> list[dict[str, Any]]:

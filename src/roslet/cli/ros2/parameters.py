@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from roslet.cli.options import CommandError, full_name
@@ -15,6 +16,7 @@ from roslet.engine.ros2.parameters import (
     TYPES,
     Parameter,
 )
+from roslet.node.ros2.parameter_files import concerns
 from roslet.node.ros2.parameters import from_value, to_parameter
 
 if TYPE_CHECKING:
@@ -44,7 +46,8 @@ class NodeParameters(ParameterStore):
         """(node, name within it; "" for all of it)."""
         if node:
             return full_name(node), name.removeprefix("~/")
-        full = full_name(name)
+        # Names of parameters have dots, which names of the graph have not.
+        full = name if name.startswith("/") else "/" + name
         found = ""
         for one in self._graph.nodes():
             if (full == one or full.startswith(one + "/")) and len(one) > len(found):
@@ -107,11 +110,12 @@ class NodeParameters(ParameterStore):
         values = value if not name and isinstance(value, dict) else {name: value}
         self._set(node, values)
 
-    def _set(self, node: str, values: dict[str, Any]) -> None:
-        """Each on its own, as `ros2 param load` does: one that is refused keeps no other from being set."""
+    def _set(self, node: str, values: dict[str, Any], new_only: bool = False) -> None:
+        """Each on its own, as `ros2 param load` does: one that is refused keeps no other from being set. With `new_only`
+        those that have the value already are left alone: they may be read-only."""
         present = self._values_of(node, list(values)) if values else {}
         made = [_parameter(name, value, present.get(name)) for name, value in values.items()]
-        refused = self._change(node, made)
+        refused = self._change(node, [one for one in made if not new_only or one != present.get(one.name)])
         if refused:
             raise CommandError(f"{node} refuses: {'; '.join(refused)}")
 
@@ -128,7 +132,7 @@ class NodeParameters(ParameterStore):
         if len(answer.results) != len(parameters):
             raise CommandError(f"{node} answers {len(answer.results)} of {len(parameters)} parameters")
         return [
-            f"{parameter.name}: {result.reason or 'no reason given'}"
+            _refusal(parameter.name, result.reason)
             for parameter, result in zip(parameters, answer.results, strict=True)
             if not result.successful
         ]
@@ -165,17 +169,25 @@ class NodeParameters(ParameterStore):
         only = "" if where in ("", "/") else full_name(where)
         sections = list(_sections(value, ""))
         if not sections and only:
-            self._set(only, flat(value))
+            self._set(only, flat(value), new_only=True)
             return
         done = 0
         for node in [only] if only else self._graph.nodes():
             for pattern, parameters in sections:
-                if _concerns(pattern, node) and (only or not self._graph.hidden(node)):
-                    self._set(node, flat(parameters))
+                if concerns(pattern, node.rpartition("/")[2], node) and (
+                    only or not self._graph.hidden(node)
+                ):
+                    self._set(node, flat(parameters), new_only=True)
                     done += 1
         if not done:
             patterns = ", ".join(pattern for pattern, _ in sections) or f"nobody: there is no {KEY}"
             raise CommandError(f"{file} is for {patterns}; no such node is there")
+
+
+def _refusal(name: str, reason: str) -> str:
+    if reason in ("", name):
+        return f"{name}: the node has declared no such parameter" if reason else f"{name}: no reason given"
+    return reason if reason.startswith(name) else f"{name}: {reason}"
 
 
 def _parameter(name: str, value: Any, present: Parameter | None) -> Parameter:
@@ -186,10 +198,8 @@ def _parameter(name: str, value: Any, present: Parameter | None) -> Parameter:
         elif present.type == DOUBLE_ARRAY and isinstance(value, list):
             value = [float(one) if type(one) is int else one for one in value]
         elif present.type == BYTE_ARRAY and isinstance(value, list):
-            try:
+            with suppress(TypeError, ValueError):  # what it is then, the node refuses
                 value = bytes(value)
-            except (TypeError, ValueError):
-                pass  # what it is then, the node refuses
         elif value == [] and present.type > BYTE_ARRAY:
             return Parameter(name, value, present.type)
     try:
@@ -206,7 +216,7 @@ def plain(value: Any) -> Any:
 def _described(one: Any) -> dict[str, Any]:
     found: dict[str, Any] = {
         "name": one.name,
-        "type": TYPES[one.type] if one.type in range(len(TYPES)) else str(one.type),
+        "type": TYPES[one.type],
         "description": one.description,
         "constraints": one.additional_constraints,
         "read_only": bool(one.read_only),
@@ -257,16 +267,3 @@ def _sections(content: dict[str, Any], before: str) -> Any:
             yield before or "/**", inner
         elif isinstance(inner, dict):
             yield from _sections(inner, f"{before.rstrip('/')}/{str(key).strip('/')}")
-
-
-def _concerns(pattern: str, node: str) -> bool:
-    """Whether a section is for a node; `*` stands for one part of its name, `**` for any number."""
-    return _fits(pattern.strip("/").split("/"), node.strip("/").split("/"))
-
-
-def _fits(pattern: list[str], parts: list[str]) -> bool:
-    if not pattern:
-        return not parts
-    if pattern[0] == "**":
-        return any(_fits(pattern[1:], parts[at:]) for at in range(len(parts) + 1))
-    return bool(parts) and pattern[0] in ("*", parts[0]) and _fits(pattern[1:], parts[1:])

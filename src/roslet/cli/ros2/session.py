@@ -98,8 +98,11 @@ class Ros2Session(Session):
     def pause(self, seconds: float) -> None:
         self.graph.pause(seconds)
 
-    def listen(self, topic: str, callback: Callable[[Any], object], depth: int, qos: Sequence[str]) -> Tap:
-        return Ros2Tap(self.graph, topic, callback, depth, qos_fields(qos))
+    def listen(
+        self, topic: str, callback: Callable[[Any], object], depth: int, qos: Sequence[str], kept: bool = True
+    ) -> Tap:
+        fields = ({} if kept else {"durability": "volatile"}) | qos_fields(qos)
+        return Ros2Tap(self.graph, topic, callback, depth, fields)
 
     def reader(self) -> Reader:
         return Ros2Reader(self.graph)

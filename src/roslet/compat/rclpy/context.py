@@ -9,17 +9,15 @@ import weakref
 from inspect import ismethod
 from typing import TYPE_CHECKING, Any
 
-from roslet.compat.rclpy.exceptions import RCLError, UnknownROSArgsError
-from roslet.compat.ros_arguments import BadArgument, RosArguments, UnknownArguments
+from roslet.compat.rclpy._arguments import Arguments
+from roslet.compat.rclpy.exceptions import RCLError
+from roslet.names import MAX_DOMAIN
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from types import TracebackType
 
     from roslet.compat.rclpy._entity import Bell
-
-# The greatest domain whose ports are ports.
-_MAX_DOMAIN = 232
 
 _running: weakref.WeakSet[Context] = weakref.WeakSet()
 
@@ -34,7 +32,7 @@ class Context:
         self._begun = False
         self._ok = False
         self._domain = 0
-        self.arguments = RosArguments([])
+        self.arguments = Arguments([])
 
     def init(
         self,
@@ -55,18 +53,13 @@ class Context:
                 raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
             if self._begun:
                 raise RuntimeError("Context.init() must only be called once")
-            try:
-                self.arguments = RosArguments(sys.argv if args is None else args)
-            except UnknownArguments as error:
-                raise UnknownROSArgsError(error.words) from None
-            except (BadArgument, OSError) as error:
-                raise RCLError(f"failed to initialize rcl: {error}") from None
+            self.arguments = Arguments(sys.argv if args is None else args)
             if domain_id is None:
                 given = os.environ.get("ROS_DOMAIN_ID", "")
                 if given and not given.isdecimal():
                     raise RCLError(f"failed to initialize rcl: ROS_DOMAIN_ID is no number: {given!r}")
                 domain_id = int(given or 0)
-            if domain_id > _MAX_DOMAIN:
+            if domain_id > MAX_DOMAIN:
                 raise RCLError(f"failed to initialize rcl: there is no domain {domain_id}")
             self._domain = domain_id
             self._begun = self._ok = True

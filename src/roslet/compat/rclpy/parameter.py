@@ -167,9 +167,16 @@ def parameter_dict_from_yaml_file(
 
     Raises RuntimeError where the file has none for a node of `target_nodes`, or is no file of parameters.
     """
-    from roslet.compat.ros_arguments import read_parameter_file
+    from roslet.errors import InvalidName
+    from roslet.node.ros2.parameter_files import read_file
 
-    sections = read_parameter_file(parameter_file)
+    try:
+        read = read_file(parameter_file)
+    except InvalidName as error:
+        raise RuntimeError(str(error)) from None
+    sections: dict[str, dict[str, Any]] = {}
+    for pattern, values in read:
+        sections.setdefault(pattern if pattern.startswith("/") else "/" + pattern, {}).update(values)
     found: dict[str, Any] = {}
     if use_wildcard and "/**" in sections:
         found.update(sections["/**"])

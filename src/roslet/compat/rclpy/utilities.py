@@ -6,10 +6,9 @@ import sys
 import threading
 from typing import TYPE_CHECKING
 
+from roslet.compat.rclpy._arguments import Arguments
 from roslet.compat.rclpy.constants import S_TO_NS
 from roslet.compat.rclpy.context import Context
-from roslet.compat.rclpy.exceptions import RCLError, UnknownROSArgsError
-from roslet.compat.ros_arguments import BadArgument, UnknownArguments, remove_ros_arguments
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,12 +31,7 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
     """The arguments, sys.argv where none are given, that are the program's own. Raises UnknownROSArgsError, RCLError."""
-    try:
-        return remove_ros_arguments(sys.argv if args is None else args)
-    except UnknownArguments as error:
-        raise UnknownROSArgsError(error.words) from None
-    except (BadArgument, OSError) as error:
-        raise RCLError(f"failed to parse arguments: {error}") from None
+    return Arguments(sys.argv if args is None else args).rest
 
 
 def ok(*, context: Context | None = None) -> bool:

@@ -195,6 +195,10 @@ class Graph:
             found += participant.nodes
         return found
 
+    def endpoint_data(self) -> "list[EndpointData]":
+        """Every endpoint as discovery announced it, those that are not of ROS too."""
+        return [one.data for one in self._endpoints.values()]
+
     def endpoints(
         self,
         topic: "str | None" = None,

@@ -45,6 +45,7 @@ class Assembly:
         self.data = bytearray(self.size)
         self.have = bytearray(self.count)
         self.left = self.count
+        self.asked = False  # whether the writer wants to hear how far we are
         self.told = 0  # the writer said to have sent the fragments up to this one
         self.lowest = 0  # no fragment below this is missing
         self.inline_qos = bytes(fragment.inline_qos)

@@ -9,7 +9,7 @@ from roslet.engine.rtps.reach import addresses_of
 from roslet.errors import ProtocolError
 from roslet.wire.rtps import endpoint_data, guid, inline_qos
 from roslet.wire.rtps.data import FLAG_D, FLAG_K
-from roslet.wire.rtps.guid import VENDORID_UNKNOWN
+from roslet.wire.rtps.guid import VENDORID_ROSLET, VENDORID_UNKNOWN
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -184,6 +184,8 @@ class Matching:
         )
 
     def _vendor(self, found: "EndpointData") -> bytes:
+        if found.guid[:12] == self._guid_prefix:
+            return VENDORID_ROSLET
         remote = self._remotes.get(found.guid[:12])
         return remote.data.vendor_id if remote is not None else VENDORID_UNKNOWN
 

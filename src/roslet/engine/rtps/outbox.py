@@ -11,17 +11,23 @@ if TYPE_CHECKING:
     Address = tuple[str, int]
     Parts = tuple[bytes | bytearray | memoryview, ...]
     Datagram = tuple[Parts, tuple[Address, ...]]
+    # ... and what is acknowledged when this datagram has arrived: a sample, and how many of its fragments
+    Bulk = tuple[Parts, tuple[Address, ...], tuple[int, int] | None]
 
 # Octets that one peer's default socket buffer (208 KiB on Linux) takes at once.
 WINDOW = 192 * 1024
 # The most that a window grows to while receivers lose nothing of it.
 MAX_WINDOW = 3 << 20
+# By how much it grows beyond the size at which something was lost, each time that nothing is.
+STEP = WINDOW // 16
 # Octets a second that are taken to have arrived without anybody saying so: where nobody can, and where somebody should.
 PACE = 200e6
 SLOW_PACE = 10e6
-# Bulk samples of one writer that are sent and not acknowledged, of which the sizes are known; of more the oldest is taken
-# to have arrived.
+# What is sent of one writer's bulk and not acknowledged, of which the sizes are known; of more the oldest is taken to have
+# arrived.
 MAX_MARKS = 1024
+WHOLE = 1 << 32
+"""Fragments of a sample: all of them."""
 
 
 class Outbox:
@@ -67,8 +73,8 @@ class Flow:
 
     def __init__(self, outbox: "Outbox") -> None:
         self.window = WINDOW
-        self.waiting: list[Iterator[Datagram]] = []
-        self.repairs: list[Iterator[Datagram]] = []
+        self.waiting: list[Iterator[Bulk]] = []
+        self.repairs: list[Iterator[Bulk]] = []
         self.resume = 0.0
         self._outbox = outbox
         self._ceiling = MAX_WINDOW
@@ -76,9 +82,10 @@ class Flow:
         self._at = 0.0
         self._sent = 0  # octets ever
         self._landed = 0  # of those, the ones that everybody has
-        self._marks: list[tuple[int, int]] = []  # sample and _sent behind it
+        self._marks: list[tuple[tuple[int, int], int]] = []  # what, and _sent behind it
+        self.high = 0.0  # the most that was under way since the window last changed
 
-    def add(self, datagrams: "Iterator[Datagram]", repair: bool = False) -> None:
+    def add(self, datagrams: "Iterator[Bulk]", repair: bool = False) -> None:
         """Send many, made when their time comes."""
         if repair:
             self.repairs.append(datagrams)
@@ -99,53 +106,56 @@ class Flow:
             if not queue:
                 break
             # One sample after the other: readers put only a few together at once.
-            datagram = next(queue[0], None)
-            if datagram is None:
+            bulk = next(queue[0], None)
+            if bulk is None:
                 queue.pop(0)
                 continue
-            found.append(datagram)
-            size = sum([len(part) for part in datagram[0]]) * len(datagram[1])
+            parts, addresses, mark = bulk
+            found.append((parts, addresses))
+            size = sum([len(part) for part in parts]) * len(addresses)
             self._sent += size
             sent += size
+            if mark is not None:
+                if len(self._marks) >= MAX_MARKS:
+                    self._landed = self._marks.pop(0)[1]
+                self._marks.append((mark, self._sent))
         self._under_way += sent
+        self.high = max(self.high, self._under_way)
         if self.waiting or self.repairs:
             # Not before a good part of the window is free: each look costs a turn of the loop.
             pace = SLOW_PACE if self._marks else PACE
             self.resume = now + max(0.0, self._under_way - self.window // 2) / pace
 
     @property
-    def last_sent(self) -> int:
-        """The last sample that has gone out and is not acknowledged, or 0."""
-        return self._marks[-1][0] if self._marks else 0
+    def last_sent(self) -> "tuple[int, int] | None":
+        """The last sample, and fragment of it, that has gone out and can be acknowledged, but is not."""
+        return self._marks[-1][0] if self._marks else None
 
-    def mark(self, sequence: int) -> None:
-        """All of this sample has gone out."""
-        if len(self._marks) >= MAX_MARKS:
-            self._landed = self._marks.pop(0)[1]
-        self._marks.append((sequence, self._sent))
-
-    def acknowledged(self, sequence: int) -> bool:
-        """Everybody has the samples up to this one. Whether that is news."""
+    def acknowledged(self, sequence: int, fragment: int = WHOLE) -> None:
+        """Everybody has the samples up to this one, of it the fragments up to `fragment`; or knows that they are lost."""
         marks = self._marks
         count = 0
-        while count < len(marks) and marks[count][0] <= sequence:
+        while count < len(marks) and marks[count][0] <= (sequence, fragment):
             count += 1
         if not count:
-            return False
+            return
         landed = marks[count - 1][1]
         del marks[:count]
         self._under_way = max(0.0, self._under_way - (landed - self._landed))
         self._landed = landed
         self.resume = 0.0
-        return True
 
     def widen(self) -> None:
-        """Bulk arrived without loss."""
+        """What was under way arrived without loss. Where that was little it says nothing of more."""
+        if self.high < self.window // 2:
+            return
+        self.high = 0.0
         self.window = min(2 * self.window, self._ceiling)
         if self.window >= self._ceiling:
-            self._ceiling = min(self._ceiling + WINDOW, MAX_WINDOW)
+            self._ceiling = min(self._ceiling + STEP, MAX_WINDOW)
 
     def narrow(self) -> None:
-        """Some was lost: smaller steps from here, but not below the first."""
+        """Some was lost: half of it, but not below the first; and small steps from near where it was."""
+        self.high = 0.0
         self._ceiling = max(self.window * 3 // 4, WINDOW)
         self.window = max(self.window // 2, WINDOW)

@@ -13,7 +13,7 @@ from roslet.wire.rtps import info_dst, inline_qos, number_set
 from roslet.wire.rtps.ack_nack import AckNack
 from roslet.wire.rtps.data import FLAG_D, FLAG_K, Data
 from roslet.wire.rtps.data_frag import FLAG_K as FRAGMENT_OF_KEY
-from roslet.wire.rtps.guid import VENDORID_EPROSIMA
+from roslet.wire.rtps.guid import VENDORID_EPROSIMA, VENDORID_ROSLET
 from roslet.wire.rtps.nack_frag import NackFrag
 from roslet.wire.rtps.qos import KEEP_ALL
 from roslet.wire.rtps.times import INFINITE
@@ -37,7 +37,8 @@ if TYPE_CHECKING:
 # Seconds between two requests to one writer: what was asked for is on its way meanwhile.
 NACK_INTERVAL = 0.005
 # Seconds until what was asked for and did not come is asked for again without a heartbeat, doubled up to the longest while
-# nothing comes: the request or all of the answer may be lost, and the writer's next heartbeat too.
+# nothing comes: the request or all of the answer may be lost, and the writer's next heartbeat too. Of roslet's writers
+# only: 8.4.2.3 has readers answer heartbeats, and others may hold to it.
 RETRY_DELAY = 0.05
 RETRY_LONGEST = 0.8
 # Seconds until a writer that has not told where it is gets asked, doubled each time, and how often.
@@ -53,6 +54,7 @@ class WriterProxy:
         "ack_at",
         "addresses",
         "alarm",
+        "asked",
         "assemblies",
         "count",
         "data",
@@ -95,6 +97,7 @@ class WriterProxy:
         self.count = 0
         self.frag_count = 0
         self.ack_at: float | None = None
+        self.asked = False  # whether a heartbeat waits for an answer
         self.nacked_at = -1.0
         self.nacked_next = 0  # what `next` was then
         self.retry = RETRY_DELAY
@@ -396,6 +399,7 @@ class Reader:
             self._drain(proxy, now)
         if not value.final or proxy.next <= proxy.last:
             proxy.reply = reply
+            proxy.asked = True
             if proxy.ack_at is None:
                 lacks = proxy.next <= proxy.last
                 self._answer_at(proxy, max(now, proxy.nacked_at + NACK_INTERVAL) if lacks else now)
@@ -407,9 +411,11 @@ class Reader:
         assembly = proxy.assemblies.get(value.sequence)
         if proxy.reliable and assembly is not None:
             assembly.told = max(assembly.told, value.last_fragment)
+            assembly.asked = proxy.vendor == VENDORID_ROSLET
             proxy.reply = reply
             if proxy.ack_at is None:
-                self._answer_at(proxy, max(now, proxy.nacked_at + NACK_INTERVAL))
+                lacks = assembly.missing(assembly.told).bits
+                self._answer_at(proxy, max(now, proxy.nacked_at + NACK_INTERVAL) if lacks else now)
 
     def handle_gap(self, proxy: WriterProxy, value: "Gap", now: float) -> None:
         """A GAP of a matched writer: those numbers never come."""
@@ -488,16 +494,21 @@ class Reader:
         for sequence, assembly in proxy.assemblies.items():
             # What the writer has not yet said to have sent is on its way.
             lacks = assembly.missing(assembly.count if sequence <= proxy.last else assembly.told)
-            if lacks.bits:
+            if lacks.bits or assembly.asked:
+                assembly.asked = False
                 partial.append((sequence, lacks))
-        if missing or partial:
+        lacking = bool(missing or [one for one in partial if one[1].bits])
+        if lacking:
             proxy.nacked_at = now
             proxy.retry = (
                 RETRY_DELAY if proxy.next != proxy.nacked_next else min(2 * proxy.retry, RETRY_LONGEST)
             )
             proxy.nacked_next = proxy.next
-            proxy.retry_at = now + proxy.retry
-        self._send_acknack(proxy, proxy.next, missing, not missing and not partial)
+            if proxy.vendor == VENDORID_ROSLET:
+                proxy.retry_at = now + proxy.retry
+        if proxy.asked or missing or not partial:
+            proxy.asked = False
+            self._send_acknack(proxy, proxy.next, missing, not lacking)
         for sequence, lacks in partial:
             proxy.frag_count += 1
             request = NackFrag(self.entity_id, proxy.guid[12:], sequence, lacks, proxy.frag_count)

@@ -1,5 +1,6 @@
 """What a writer knows of one matched reader. RTPS 2.3, 8.4.7.5."""
 
+from roslet.engine.rtps.outbox import WHOLE
 from roslet.wire.rtps import info_dst
 
 TYPE_CHECKING = False
@@ -21,6 +22,7 @@ class ReaderProxy:
         "guid",
         "info_dst",
         "next_preface",
+        "parts",
         "preface",
         "reliable",
         "resent",
@@ -51,6 +53,15 @@ class ReaderProxy:
         self.preface: Preface | None = None  # of a datagram with one sample for it
         self.next_preface: Preface | None = None  # of one more sample in a datagram
         self.resent: dict[int, float] = {}
+        self.parts = (
+            0,
+            0,
+        )  # the sample that it is putting together, and the fragments of it that it has or knows to be lost
+
+    @property
+    def progress(self) -> "tuple[int, int]":
+        """The sample, and the fragments of it, up to which everything has reached it."""
+        return max((self.acked, WHOLE), self.parts)
 
 
 def addresses_for_all(proxies: "list[ReaderProxy]") -> "tuple[Address, ...]":

@@ -25,6 +25,7 @@ from roslet.wire.rtps.data import FLAG_D, Data
 from roslet.wire.rtps.guid import (
     ENTITYID_SPDP_BUILTIN_PARTICIPANT_WRITER,
     ENTITYID_UNKNOWN,
+    ENTITYKIND_BUILTIN,
     GUIDPREFIX_UNKNOWN,
 )
 
@@ -135,9 +136,15 @@ class Receiver:
             ):
                 routes = self._routes.get(prefix + writer_id)
                 end = _COMMON_END + length if length else size
-                if routes is not None and _COMMON_SIZE <= end <= size and high >= 0 and (low or high):
+                if (
+                    routes is not None
+                    and writer_id[3] < ENTITYKIND_BUILTIN
+                    and _COMMON_SIZE <= end <= size
+                    and high >= 0
+                    and (low or high)
+                ):
                     remote = self._remotes.get(prefix)
-                    if remote is not None:
+                    if remote is not None and source[0] in remote.hosts:
                         remote.heard = now
                     time = seconds * 1000000000 + (fraction * 1000000000 >> 32)
                     if self._liveliness.manual:
@@ -158,7 +165,7 @@ class Receiver:
         self._time = time
         self._reply = ()
         remote = self._remotes.get(head.guid_prefix)
-        if remote is not None:
+        if remote is not None and self._host in remote.hosts:
             remote.heard = now
         handlers = self._handlers
         for kind, flags, start, end in submessage.walk(view, at):
@@ -170,6 +177,8 @@ class Receiver:
 
     def _data(self, view: memoryview, at: int, end: int, flags: int) -> None:
         value = data.parse(view, at, end, flags)
+        if value.writer_id[3] >= ENTITYKIND_BUILTIN and not self._believed():
+            return
         writer = self._source + value.writer_id
         routes = self._routes.get(writer)
         if routes is not None:
@@ -186,7 +195,17 @@ class Receiver:
         else:
             self._count("data-of-unmatched-writer")
 
+    def _believed(self) -> bool:
+        """Whether discovery from this source may come from where it came: else anybody could redirect or end a peer."""
+        remote = self._remotes.get(self._source)
+        if remote is None or remote.believes(self._host, self.now):
+            return True
+        self._count("discovery-from-another-address")
+        return False
+
     def _targets(self, value: "Any") -> "list[tuple[Reader, WriterProxy]]":
+        if value.writer_id[3] >= ENTITYKIND_BUILTIN and not self._believed():
+            return []
         routes = self._routes.get(self._source + value.writer_id)
         if routes is None:
             self._count("submessage-of-unmatched-writer")
@@ -222,6 +241,8 @@ class Receiver:
 
     def _acknack(self, view: memoryview, at: int, end: int, flags: int) -> None:
         value = ack_nack.parse(view, at, end, flags)
+        if value.writer_id[3] >= ENTITYKIND_BUILTIN and not self._believed():
+            return
         writer = self._writers.get(value.writer_id)
         if writer is None:
             self._count("acknack-of-unknown-writer")

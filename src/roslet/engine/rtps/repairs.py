@@ -3,6 +3,7 @@
 RTPS 2.3, 8.4.9.2 (reliable writer), 8.4.14.1 (fragments).
 """
 
+from roslet.engine.rtps.outbox import WHOLE
 from roslet.wire.rtps import number_set, times
 from roslet.wire.rtps.data import FLAG_K, FLAG_Q, Preface
 from roslet.wire.rtps.data_frag import FLAG_K as FRAGMENT_OF_KEY
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
     from roslet.engine.rtps.common import Common
     from roslet.engine.rtps.history import Change
-    from roslet.engine.rtps.outbox import Address, Datagram, Flow
+    from roslet.engine.rtps.outbox import Address, Bulk, Flow
     from roslet.engine.rtps.reader_proxy import ReaderProxy
     from roslet.engine.rtps.writer import Writer
     from roslet.wire.rtps.ack_nack import AckNack
@@ -42,7 +43,9 @@ class Repairs:
         self._outbox = common.outbox
         self._flow = flow
         self._paced: dict[int, int] = {}  # sequence number -> runs of its fragments that the flow still holds
-        self._lossless = True  # nobody asked for a part of the bulk under way again
+        self._lossless = True  # nobody asked again for what was sent up to here:
+        self._round = 0
+        self._mending: set[int] = set()  # samples of which lost fragments wait to be sent again
 
     @property
     def busy(self) -> bool:
@@ -79,7 +82,7 @@ class Repairs:
         proxy: "ReaderProxy | None",
         numbers: "list[int] | None",
         addresses: "tuple[Address, ...]",
-    ) -> "Iterator[Datagram]":
+    ) -> "Iterator[Bulk]":
         """The one datagram of a sample that fits, with a heartbeat behind it."""
         writer = self._writer
         superseded = self._superseded(change)
@@ -90,7 +93,7 @@ class Repairs:
             if writer.any_reliable:
                 reader_id = ENTITYID_UNKNOWN if proxy is None else proxy.guid[12:]
                 pad += writer.heartbeat(reader_id, False, change.sequence).emit()
-            yield (front, change.payload, pad), addresses
+            yield (front, change.payload, pad), addresses, self._mark(change.sequence, WHOLE)
         self._done(change)
         if superseded and writer.any_reliable:
             yield from self._ask(change, proxy, addresses)
@@ -101,7 +104,7 @@ class Repairs:
         proxy: "ReaderProxy | None",
         numbers: "list[int] | None",
         addresses: "tuple[Address, ...]",
-    ) -> "Iterator[Datagram]":
+    ) -> "Iterator[Bulk]":
         size = self._writer.fragment_size
         total = len(change.payload)
         count = (total + size - 1) // size
@@ -109,12 +112,20 @@ class Repairs:
         front, reader_id = self._front(change, proxy)
         flags = FRAGMENT_OF_KEY if change.flags & FLAG_K else 0
         entity_id, sequence, said = self._writer.entity_id, change.sequence, change.inline_qos
+        untold = 0
         for number in numbers if numbers is not None else range(1, count + 1):
             if number > count or self._superseded(change):
                 break
             part = view[(number - 1) * size : number * size]
             piece = DataFrag(reader_id, entity_id, sequence, number, 1, size, total, part, said, flags)
-            yield (front + piece.emit_front(), part), addresses
+            untold += len(part)
+            if untold < self._flow.window // 4 or not self._writer.tells or len(part) & 3:
+                yield (front + piece.emit_front(), part), addresses, None
+                continue
+            # Readers of our own kind say at once how far they are, which opens the window.
+            untold = 0
+            told = HeartbeatFrag(reader_id, entity_id, sequence, number, self._writer.next_count()).emit()
+            yield (front + piece.emit_front(), part, told), addresses, (sequence, number)
         self._done(change)
         if self._writer.any_reliable:
             yield from self._ask(change, proxy, addresses, count)
@@ -125,7 +136,7 @@ class Repairs:
         proxy: "ReaderProxy | None",
         addresses: "tuple[Address, ...]",
         count: int = 0,
-    ) -> "Iterator[Datagram]":
+    ) -> "Iterator[Bulk]":
         """Heartbeats of no more than this sample: the readers would ask for those that wait behind it."""
         writer = self._writer
         reader_id = ENTITYID_UNKNOWN if proxy is None else proxy.guid[12:]
@@ -134,7 +145,21 @@ class Repairs:
             told = HeartbeatFrag(reader_id, writer.entity_id, change.sequence, count, writer.next_count())
             parts.append(bytes(told.emit()))
         parts.append(bytes(writer.heartbeat(reader_id, False, change.sequence).emit()))
-        yield (b"".join(parts),), addresses
+        yield (b"".join(parts),), addresses, self._mark(change.sequence, WHOLE)
+
+    def ask_for(self, sent: "tuple[int, int]") -> None:
+        """Ask for what has gone out; more is on its way."""
+        writer = self._writer
+        sequence, fragment = sent
+        if fragment == WHOLE:
+            beat = writer.heartbeat(ENTITYID_UNKNOWN, False, sequence).emit()
+        else:
+            count = writer.next_count()
+            beat = HeartbeatFrag(ENTITYID_UNKNOWN, writer.entity_id, sequence, fragment, count).emit()
+        self._outbox.send((self._common.header, beat), writer.addresses)
+
+    def _mark(self, sequence: int, fragment: int) -> "tuple[int, int] | None":
+        return (sequence, fragment) if self._writer.any_reliable else None
 
     def _done(self, change: "Change") -> None:
         left = self._paced[change.sequence] - 1
@@ -142,8 +167,7 @@ class Repairs:
             self._paced[change.sequence] = left
         else:
             del self._paced[change.sequence]
-        if self._writer.any_reliable:
-            self._flow.mark(change.sequence)
+        self._mending.discard(change.sequence)
 
     def _superseded(self, change: "Change") -> bool:
         """Whether nobody needs the rest of a sample: acknowledged, expired, or overwritten while it waited its turn."""
@@ -154,10 +178,19 @@ class Repairs:
 
     def acknowledged(self, sequence: int) -> None:
         """Every reliable reader has the samples up to this one."""
-        if self._flow.acknowledged(sequence):
+        self._flow.acknowledged(sequence)
+        if sequence >= self._round:
             if self._lossless:
                 self._flow.widen()
             self._lossless = True
+            self._round = self._writer.last
+
+    def _lost(self) -> None:
+        """Once for all that was under way at a time: what one overrun took is reported piece by piece."""
+        if self._lossless:
+            self._lossless = False
+            self._flow.narrow()
+            self._round = self._writer.last
 
     # -- to one reader
 
@@ -235,7 +268,6 @@ class Repairs:
             return False
         absent = []
         again = []
-        lost = False
         for number in asked:
             if number in self._paced:
                 continue
@@ -246,12 +278,10 @@ class Repairs:
                 if len(proxy.resent) > MAX_RESENT:
                     proxy.resent.clear()
                 proxy.resent[number] = now
-                lost = lost or writer.is_bulk(change.payload)
                 again.append(number)
         self.send_all(proxy, again, addresses)
-        if lost:
-            self._lossless = False
-            self._flow.narrow()
+        if again:
+            self._lost()
         if absent:
             self._send_gaps(proxy, absent, addresses)
         if not self._paced:
@@ -264,18 +294,27 @@ class Repairs:
         self, proxy: "ReaderProxy", value: "NackFrag", now: float, addresses: "tuple[Address, ...]"
     ) -> None:
         """What a NACK_FRAG asks for."""
-        change = self._writer.history.get(value.sequence)
+        writer = self._writer
+        change = writer.history.get(value.sequence)
         if change is None or change.to not in (b"", proxy.guid):
             self._send_gaps(proxy, [value.sequence], addresses)
             return
-        if value.sequence in self._paced:
+        numbers = value.state.numbers()
+        if writer.tells:
+            done = numbers[-1] if numbers else value.state.base - 1
+            proxy.parts = (value.sequence, done)
+            least = min([one.progress for one in writer.proxies.values() if one.reliable])
+            self._flow.acknowledged(least[0], least[1])
+        if not numbers:
+            return
+        if value.sequence in self._mending or (value.sequence in self._paced and not writer.tells):
             # What it lacks may be on its way; the run ends with another heartbeat.
             self._common.count("nack-frag-early")
-        elif value.state.bits:
-            self._lossless = False
-            self._flow.narrow()
-            self._pace(change, proxy, value.state.numbers(), addresses, True)
-        self._writer.ask_soon(now)
+        else:
+            self._lost()
+            self._mending.add(value.sequence)
+            self._pace(change, proxy, numbers, addresses, True)
+        writer.ask_soon(now)
 
     def _send_gaps(self, proxy: "ReaderProxy", absent: "list[int]", addresses: "tuple[Address, ...]") -> None:
         """GAPs over numbers, in order: the run they begin with as a range, the rest as a set."""

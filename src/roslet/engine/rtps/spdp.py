@@ -43,6 +43,8 @@ TRANSITIONS = {
 # lost.
 QUICK = 5
 QUICK_PERIOD = 0.1
+# What only this machine sends from; 0.0.0.0 is how multicast comes over a loopback without a route.
+LOCAL = ("127.0.0.1", "0.0.0.0")
 # Seconds: a peer that is heard twice, so long apart, from another of its addresses, and not once from the one in use, has
 # moved there.
 MOVED = 1.0
@@ -59,6 +61,13 @@ class RemoteParticipant:
         self._elsewhere: tuple[str, float] | None = None
         self.update(value, host, networks)
 
+    def believes(self, host: str, now: float) -> bool:
+        """Whether discovery in its name may come from this address: where it was first heard, where it says it is, or this
+        machine. One that has been silent for half its lease may have moved."""
+        if host in self.hosts:
+            return True
+        return self.lease is not None and now - self.heard > self.lease / 2
+
     def update(self, value: "ParticipantData", host: str, networks: "tuple[Network, ...]" = ()) -> None:
         self.data = value
         self.host = host
@@ -67,6 +76,11 @@ class RemoteParticipant:
             value.metatraffic_unicast or value.metatraffic_multicast, host, networks
         )
         self.default = addresses_of(value.default_unicast or value.default_multicast, host, networks)
+        self.hosts = {host}
+        self.hosts.update(LOCAL)
+        self.hosts.update([address for address, _ in networks])
+        locators = value.metatraffic_unicast + value.default_unicast
+        self.hosts.update([one.host for one in locators if one.usable])
         self.alone = bool(networks) and not (value.metatraffic_multicast and near(host, networks))
 
     def moved(self, host: str, now: float) -> bool:
@@ -211,7 +225,7 @@ class Spdp:
         elif remote is not None:
             remote.heard = now
             moved = remote.moved(host, now)
-            if found != remote.data:
+            if found != remote.data or host not in remote.hosts:
                 remote.update(found, host, self._networks)
                 self._discovered(remote, now)
                 self._deliver(ParticipantDiscovered(found))

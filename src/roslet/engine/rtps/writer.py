@@ -14,7 +14,7 @@ from roslet.wire.rtps import guid as guids
 from roslet.wire.rtps import inline_qos as inline
 from roslet.wire.rtps import times
 from roslet.wire.rtps.data import FLAG_D, FLAG_K, FLAG_Q, Preface
-from roslet.wire.rtps.guid import ENTITYID_UNKNOWN
+from roslet.wire.rtps.guid import ENTITYID_UNKNOWN, VENDORID_ROSLET
 from roslet.wire.rtps.heartbeat import Heartbeat
 from roslet.wire.rtps.inline_qos import STATUS_DISPOSED, STATUS_UNREGISTERED
 from roslet.wire.rtps.qos import AUTOMATIC, KEEP_ALL, TRANSIENT_LOCAL
@@ -33,13 +33,19 @@ if TYPE_CHECKING:
 
 # Every so many samples a heartbeat rides along, so that a fast writer hears of losses without a timer.
 PIGGYBACK = 16
+# How many samples a reliable reader that has never answered is told of beforehand, each in turn.
+GREETINGS = 8
 # Seconds from a sample to the heartbeat that asks for its acknowledgement, doubled up to the longest while nobody answers.
 HEARTBEAT_DELAY = 0.02
 HEARTBEAT_LONGEST = 0.25
+# The same for bulk, of which a datagram is worth some heartbeats; and its last one may be lost with the heartbeat behind it.
+BULK_DELAY = 0.005
 # Octets of sample in one datagram: below the limit of UDP over IPv4 with room for the submessages before it.
 FRAGMENT_SIZE = 65000
 # Samples from this size on go within the window of the writer's flow; smaller ones never wait.
 BULK = 8192
+# Octets that a small datagram takes of a socket's buffer, besides twice its size, on Linux.
+OVERHEAD = 768
 # Payloads up to this size are copied behind their header: one buffer is sent faster than two.
 JOINED = 2048
 
@@ -61,7 +67,7 @@ class Writer:
         self.reliable = self.qos.reliable
         self.keeps = self.qos.durability >= TRANSIENT_LOCAL
         self.keyed = guids.is_keyed(endpoint.guid) and not guids.is_builtin(endpoint.guid)
-        backlog = self.qos.history[0] == KEEP_ALL and not self.keeps
+        self._blocks = backlog = self.qos.history[0] == KEEP_ALL and not self.keeps
         self.history = History(
             self.qos,
             min(limits.backlog_bytes, limits.history_bytes) if backlog else limits.history_bytes,
@@ -88,9 +94,11 @@ class Writer:
         self.preface = Preface(common.header, self.entity_id)
         self._addresses: tuple[Address, ...] = ()
         self._any_reliable = False
-        self._stale = False  # whether the two above are to be found anew
+        self._tells = False
+        self._stale = False  # whether the three above are to be found anew
         self._directed = False  # whether any sample was for one reader alone
         self._wanted = False  # whether somebody waits for room
+        self._strangers = False  # whether a reader may not know us yet: see _greet
         self._least = 0  # every reliable reader has the samples up to this one
         self._since_heartbeat = 0
         self._heartbeats = 0
@@ -102,15 +110,26 @@ class Writer:
     # -- what its owner does
 
     def full(self, size: int = 0, key: bytes = b"") -> bool:
-        """Whether `write` of `size` octets (of instance `key`) would raise HistoryFull.
+        """Whether `write` of `size` octets (of instance `key`) would raise HistoryFull, or run over what the readers of this
+        KEEP_ALL writer have been seen to take.
 
         Once it was, by this or by `write`, a WriterReady event tells when there is room; how long to wait for it is the
         owner's affair (RELIABILITY's max_blocking_time).
         """
         if self._stale:
             self._refresh()
-        if not (self.keeps or self._any_reliable) or not self.history.full(size, key):
+        if not (self.keeps or self._any_reliable):
             return False
+        history = self.history
+        if not history.full(size, key):
+            if not self._blocks or size >= BULK or not len(history):
+                return False
+            # Small samples never wait in the flow; but who is ready to wait can do so before they overrun the readers.
+            under_way = 2 * history.bytes + OVERHEAD * len(history)
+            if under_way > self._flow.high:
+                self._flow.high = under_way
+            if under_way < self._flow.window:
+                return False
         self._wanted = True
         return True
 
@@ -152,9 +171,10 @@ class Writer:
             if self._lifespan is not None:
                 change.expires = now + self._lifespan
             if kept:
-                if self._wanted is False and self.history.full(size, change.key):
-                    self._wanted = True
+                self._wanted = self._wanted or self.history.full(size, change.key)
                 self.history.add(change)
+        if self._strangers:
+            self._greet(sequence)
         self.last = sequence
         if self._period is not None:
             self._note_deadline(key, flags, now)
@@ -177,7 +197,7 @@ class Writer:
         else:
             self._send_small(sequence, payload, inline_qos, time, flags)
         if self._any_reliable and self._heartbeat_at is None:
-            self._ask_at(now + self._delay)
+            self._ask_at(now + (BULK_DELAY if bulk else self._delay))
         return sequence
 
     def _send_small(
@@ -272,9 +292,20 @@ class Writer:
             self._repairs.send_all(proxy, self.history.numbers(), proxy.addresses)
         if proxy.reliable:
             self._repairs.introduce(proxy)
+            self._strangers = not guids.is_builtin(self.data.guid)
             if late and len(self.history) and self._heartbeat_at is None:
                 self._ask_at(now + self._delay)
         return True
+
+    def _greet(self, sequence: int) -> None:
+        """Before sample `sequence`, introduce us again to readers that have said nothing yet: the first introduction may
+        have come before they knew of us, and Cyclone takes what comes before any for history, which a volatile reader of it
+        has no use for."""
+        self._strangers = False
+        for proxy in self.proxies.values():
+            if proxy.reliable and proxy.count < 0 and sequence - proxy.start < GREETINGS:
+                self._strangers = True
+                self._repairs.introduce(proxy)
 
     def unmatch(self, guid: bytes, now: float = 0.0) -> "ReaderProxy | None":
         """Forget a reader."""
@@ -288,7 +319,9 @@ class Writer:
         self._stale = False
         proxies = list(self.proxies.values())
         self._addresses = addresses_for_all(proxies)
-        self._any_reliable = bool([one for one in proxies if one.reliable])
+        reliable = [one for one in proxies if one.reliable]
+        self._any_reliable = bool(reliable)
+        self._tells = self._any_reliable and not [one for one in reliable if one.vendor != VENDORID_ROSLET]
         if not self._any_reliable:
             self._heartbeat_at = None
 
@@ -305,6 +338,13 @@ class Writer:
         if self._stale:
             self._refresh()
         return self._any_reliable
+
+    @property
+    def tells(self) -> bool:
+        """Whether all who acknowledge are roslet's: they say how far a large sample has come."""
+        if self._stale:
+            self._refresh()
+        return self._tells
 
     # -- heartbeats
 
@@ -340,10 +380,9 @@ class Writer:
             return
         if self._repairs.busy:
             # Whoever is asked for all now would ask for what is on its way.
-            if self._flow.last_sent:
-                beat = self.heartbeat(ENTITYID_UNKNOWN, False, self._flow.last_sent).emit()
-                self._outbox.send((self._common.header, beat), self.addresses)
-            self._ask_at(now + HEARTBEAT_DELAY)
+            if self._flow.last_sent is not None:
+                self._repairs.ask_for(self._flow.last_sent)
+            self._ask_at(now + BULK_DELAY)
             return
         self._heartbeat_at = None
         behind = [one for one in self.proxies.values() if one.reliable and one.acked < self.last]
@@ -390,7 +429,7 @@ class Writer:
         if value.state.bits and self._repairs.send_again(proxy, value, now, reply or proxy.addresses):
             self._delay = HEARTBEAT_DELAY
             self._ask_at(now + self._delay)
-        elif not value.final:
+        elif not value.final and not self._repairs.busy:
             beat = self.heartbeat(proxy.guid[12:], proxy.acked >= self.last).emit()
             self._outbox.send((self._common.header, proxy.info_dst, beat), reply or proxy.addresses)
 
@@ -406,6 +445,10 @@ class Writer:
             self._common.count("nack-frag-repeated")
             return
         proxy.frag_count = value.count
+        if value.sequence > self.last:
+            # A GAP over what is yet to be written would lose it.
+            self._common.count("nack-frag-of-unwritten-sample")
+            return
         self._repairs.send_fragments_again(proxy, value, now, reply or proxy.addresses)
 
     def _forget_acknowledged(self) -> None:
@@ -419,7 +462,7 @@ class Writer:
         else:
             self.history.remove_through(least)
         self._repairs.acknowledged(least)
-        if self._wanted and not self.history.full(0):
+        if self._wanted and not self.full(0):
             self._wanted = False
             self._common.deliver(WriterReady(self.entity_id))
 

@@ -302,7 +302,11 @@ class ClientGoal:
 
     def result(self, timeout: float | None = None) -> tuple[str, Any]:
         """(status, result message); spins meanwhile. Raises CallTimeout after `timeout` seconds (None: waits for ever)."""
-        found: tuple[str, Any] = self.client._wait(self.result_async(), timeout)
+        try:
+            found: tuple[str, Any] = self.client._wait(self.result_async(), timeout)
+        except CallTimeout:
+            self._asked = None  # whoever asks again, asks the server
+            raise
         return found
 
     def cancel_async(self) -> Future[bool]:

@@ -95,10 +95,11 @@ class Ros2Network(Network):
 
     def begin(self) -> None:
         overrides = overrides_of(self.arguments.overrides, self.base_name, self.name)
-        if self.arguments.switches.get("rosout-logs", True):
+        if self.node._seen and self.arguments.switches.get("rosout-logs", True):
             self.node.log._publisher = self.publisher("/rosout", "rcl_interfaces/msg/Log", presets.ROSOUT)
         self.parameters = NodeParameters(self, overrides)
-        if self.parameters.declare("start_type_description_service", True, read_only=True):
+        described = self.parameters.declare("start_type_description_service", True, read_only=True)
+        if described and self.node._seen:
             descriptions.offer(self)
 
     def say_goodbye(self) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from roslet.errors import InvalidName, Unsupported
-from roslet.node.values import parse_value
+from roslet.node.values import load_yaml, parse_value
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -24,7 +24,9 @@ def overrides_of(rules: list[ParameterOverride], node_name: str, full_name: str)
     found: dict[str, Any] = {}
     for rule in rules:
         if rule.file:
-            found.update(_of_file(rule.file, node_name, full_name))
+            for pattern, parameters in read_file(rule.file):
+                if concerns(pattern, node_name, full_name):
+                    found.update(parameters)
         elif not rule.node or concerns(rule.node, node_name, full_name):
             found[rule.name] = parse_value(rule.value)
     return found
@@ -46,7 +48,8 @@ def _fits(pattern: list[str], parts: list[str]) -> bool:
     return bool(parts) and pattern[0] in ("*", parts[0]) and _fits(pattern[1:], parts[1:])
 
 
-def _of_file(path: str, node_name: str, full_name: str) -> dict[str, Any]:
+def read_file(path: str) -> list[tuple[str, dict[str, Any]]]:
+    """(pattern of nodes, their parameters by name), in the order of a file. Raises as `overrides_of`."""
     try:
         import yaml  # type: ignore[import-untyped,unused-ignore]
     except ImportError:
@@ -58,13 +61,14 @@ def _of_file(path: str, node_name: str, full_name: str) -> dict[str, Any]:
     if len(text) > MAX_FILE:
         raise InvalidName(f"{path}: a parameter file of more than {MAX_FILE} characters")
     try:
-        content = yaml.safe_load(text)
-    except yaml.YAMLError as error:
+        content = load_yaml(yaml, text)
+    except ValueError as error:
         raise InvalidName(f"{path}: {error}") from None
-    found: dict[str, Any] = {}
-    for pattern, parameters in _sections(content, "", path, 0):
-        if concerns(pattern, node_name, full_name):
-            _flatten(parameters, "", found, path, 0)
+    found = []
+    for pattern, inner in _sections(content, "", path, 0):
+        parameters: dict[str, Any] = {}
+        _flatten(inner, "", parameters, path, 0)
+        found.append((pattern, parameters))
     return found
 
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from typing import Any
 
     from roslet.node.ros2.network import Ros2Network
+    from roslet.node.ros2.services import Ros2Service
+    from roslet.node.ros2.topics import Ros2Publisher
 
 # The field of rcl_interfaces/msg/ParameterValue that holds a value of each type.
 FIELDS = {
@@ -96,6 +98,15 @@ class NodeParameters:
         self._network = network
         self._callbacks: dict[str, list[Callable[[Any], object]]] = {}
         self.store = Parameters(overrides, on_change=self._changed)
+        self._events: Ros2Publisher | None = None
+        self._services: list[Ros2Service] = []
+        if network.node._seen:
+            self._offer()
+        self.store.declare(USE_SIM_TIME, False)
+
+    def _offer(self) -> None:
+        """Let others ask, set and hear."""
+        network = self._network
         self._events = network.publisher(
             network.resolve("/parameter_events"),
             "rcl_interfaces/msg/ParameterEvent",
@@ -118,7 +129,6 @@ class NodeParameters:
                 ("set_parameters_atomically", "SetParametersAtomically", self._set_atomically),
             )
         ]
-        self.store.declare(USE_SIM_TIME, False)
 
     def ask_in_spin(self) -> None:
         """From now on others' requests are served inside spin: the user has callbacks that decide on them."""
@@ -189,19 +199,23 @@ class NodeParameters:
         self._changed(Change([], [], [Parameter(parameter.name)]))
 
     def _changed(self, change: Change) -> None:
+        # For nobody, the messages' classes need not be made: that would be much of a node's start.
+        if self._events is not None and self._events.subscriber_count:
+            self._events.publish(self._event(change))
+        for one in change.new + change.changed + change.deleted:
+            if one.name == USE_SIM_TIME:
+                self._network.follow_clock(one.value is True)
+            for callback in self._callbacks.get(one.name, ()):
+                self._network.node._call_back(callback, one.value)
+
+    def _event(self, change: Change) -> Any:
         stamp = self._network.node.now()
         event = message_of("ParameterEvent", node=self._network.name)
         event.stamp.sec, event.stamp.nanosec = stamp.secs, stamp.nsecs
         event.new_parameters = [to_parameter(one) for one in change.new]
         event.changed_parameters = [to_parameter(one) for one in change.changed]
         event.deleted_parameters = [to_parameter(one) for one in change.deleted]
-        if not self._network.node.is_shutdown:
-            self._events.publish(event)
-        for one in change.new + change.changed + change.deleted:
-            if one.name == USE_SIM_TIME:
-                self._network.follow_clock(one.value is True)
-            for callback in self._callbacks.get(one.name, ()):
-                self._network.node._call_back(callback, one.value)
+        return event
 
     # -- what others ask; every request is answered, as rclpy answers it
 

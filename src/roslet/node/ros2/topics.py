@@ -121,7 +121,10 @@ class _Endpoint:
 
 
 class Ros2Publisher(_Endpoint, Publisher):
-    """A publisher of one topic; a node may have several of the same."""
+    """A publisher of one topic; a node may have several of the same.
+
+    A message that only subscriptions of this process get is copied, not serialised, and so its values are not checked.
+    """
 
     def __init__(
         self, network: Ros2Network, node: Node, topic: str, message_type: type[Message], qos: QoS
@@ -136,6 +139,8 @@ class Ros2Publisher(_Endpoint, Publisher):
         self._kept: deque[Message] | None = deque(maxlen=qos.depth if not self._wait else MAX_KEPT)
         if not self._latch:
             self._kept = None
+        # Whether a message that nobody outside gets need not be known to the writer: it counts for deadline and liveliness.
+        self._here = not self._latch and qos.deadline is None and qos.liveliness == "automatic"
         self._shell = network.shell
         self._writer: Writer | None = network.create_writer(self)
 
@@ -167,6 +172,10 @@ class Ros2Publisher(_Endpoint, Publisher):
             message = self.type(**fields)
         elif fields or message.__class__ is not self.type:
             message = self._converted(message, fields)
+        if self._here and self._local and not writer.proxies:
+            self.messages += 1
+            self._deliver_locally(message)
+            return
         with self._lock:
             try:
                 payload: Any = self._view[: message.serialize_into(self._view, 0)]

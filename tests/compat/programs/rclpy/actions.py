@@ -115,6 +115,7 @@ print(
     "there", client._action_client.wait_for_server(timeout_sec=10.0), client._action_client.server_is_ready()
 )
 print("absent", ActionClient(client, Fibonacci, "nowhere").wait_for_server(timeout_sec=0.2))
+time.sleep(0.5)  # until the server knows the subscription of feedback too
 client.run(5)
 client.run(-1)
 client.run(1000, cancel=True)

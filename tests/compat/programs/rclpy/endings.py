@@ -13,8 +13,19 @@ from rclpy.signals import SignalHandlerOptions
 how = sys.argv[1]
 
 
+ended = threading.Event()
+
+
 def kill(number):
-    threading.Timer(0.3, os.kill, (os.getpid(), number)).start()
+    """Again and again: a busy machine may not have begun to spin when the first one comes."""
+
+    def repeat():
+        while not ended.wait(0.3 if first else 3.0):
+            first.clear()
+            os.kill(os.getpid(), number)
+
+    first = [True]
+    threading.Thread(target=repeat, daemon=True).start()
 
 
 if how == "own handlers":
@@ -41,8 +52,11 @@ try:
         rclpy.spin(node)
     elif how == "loop":
         kill(signal.SIGTERM)
-        while rclpy.ok():
-            rclpy.spin_once(node, timeout_sec=0.1)
+        try:
+            while rclpy.ok():
+                rclpy.spin_once(node, timeout_sec=0.1)
+        except ExternalShutdownException:
+            pass  # the signal came within a turn; between two, the loop just ends
     elif how == "own handlers":
         kill(signal.SIGINT)
         while rclpy.ok():  # a spin without an end would not notice: its wait is not Python's
@@ -65,13 +79,16 @@ try:
         print("left as it is")
         sys.exit(0)
 except KeyboardInterrupt:
+    ended.set()
     print("KeyboardInterrupt", rclpy.ok())
 except ExternalShutdownException:
+    ended.set()
     print("ExternalShutdownException", rclpy.ok())
     if how == "uncaught":
         raise
 except KeyError as error:
     print("KeyError", error)
+ended.set()
 print("last", rclpy.ok())
 node.destroy_node()
 rclpy.try_shutdown()

@@ -15,11 +15,11 @@ class Talker(Node):
         self.i = 0
 
     def timer_callback(self):
-        if self.publisher_.get_subscription_count() == 0:
-            return
         if self.i == 5:
             self.publisher_.wait_for_all_acked(Duration(seconds=5))
             raise SystemExit
+        if self.publisher_.get_subscription_count() == 0:
+            return
         self.publisher_.publish(String(data=f"news {self.i}"))
         print("said", self.i)
         self.i += 1

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from types import FrameType
 
-    from roslet.compat.ros_arguments import RosArguments
+    from roslet.compat.rclpy._arguments import Arguments
 
     # level, name, text, file, function, line, nanoseconds
     Sink = Callable[[int, str, str, str, str, int, int], object]
@@ -33,15 +33,12 @@ _MAX_PLACES = 10_000
 
 _write_lock = threading.Lock()
 _levels: dict[str, int] = {}
-_default_level = [int(LoggingSeverity.INFO)]
 _sinks: dict[str, list[Sink]] = {}
 _places: dict[tuple[str, int, str, int], _Place] = {}
 
 
-def configure(arguments: RosArguments) -> None:
+def configure(arguments: Arguments) -> None:
     """Set the levels that the program's arguments say."""
-    if arguments.level is not None:
-        _default_level[0] = arguments.level
     _levels.update(arguments.levels)
 
 
@@ -65,7 +62,7 @@ def effective_level(name: str) -> LoggingSeverity:
         if level:
             return LoggingSeverity(level)
         name = name.rpartition(".")[0]
-    return LoggingSeverity(_levels.get("", _default_level[0]))
+    return LoggingSeverity(_levels.get("") or LoggingSeverity.INFO)
 
 
 def add_sink(name: str, sink: Sink) -> None:
