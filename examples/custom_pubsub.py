@@ -4,7 +4,7 @@ The definitions are in msgs/mros_test/msg; loading them is all that is needed.
 
     python custom_pubsub.py sub &
     python custom_pubsub.py pub
-    roslet topic echo /user_type
+    roslet topic echo /user_type --network ros1://
 """
 
 from __future__ import annotations

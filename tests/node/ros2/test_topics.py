@@ -45,7 +45,8 @@ def test_within_one_process_nothing_is_serialised(make2: Ros2Nodes, serialised: 
     heard: list[Any] = []
     talker.subscribe("/chatter", UINT32, heard.append)
     listener.subscribe("/chatter", UINT32, heard.append)
-    message: Any = message_class("ros2", UINT32)(data=7)
+    kind: Any = message_class("ros2", UINT32)
+    message = kind(data=7)
     publisher.publish(message)
     wait_until(lambda: len(heard) == 2, "both hear it")
     assert serialised == []
@@ -160,24 +161,28 @@ def test_nodes_of_one_network_share_a_participant_and_those_of_two_do_not(make2:
     participants = [node._network.shell.participant for node in (one, same, other, elsewhere)]  # type: ignore[attr-defined]
     assert len({id(one) for one in participants}) == 3
     assert participants[0] is participants[1]
-    heard: dict[str, list[int]] = {}
-    links: list[Any] = []
+    inboxes: dict[str, list[tuple[Any, Any]]] = {}
+
+    def listen(node: roslet.Node) -> None:
+        inbox = inboxes[node.name] = []
+
+        def heard(message: Any, link: Any = None) -> None:
+            inbox.append((message.data, link))
+
+        node.subscribe("/t", UINT32, heard, with_link=True)
+
     for node in (same, other, elsewhere):
-        inbox = heard[node.name] = []
-        node.subscribe(
-            "/t",
-            UINT32,
-            lambda message, link, inbox=inbox: (inbox.append(message.data), links.append(link)),
-            with_link=True,
-        )
+        listen(node)
     publisher = one.publisher("/t", UINT32)
     assert publisher.wait_for_subscribers(2, timeout=8)
     publisher.publish(data=3)
-    wait_until(lambda: heard["/same"] and heard["/other"], "both of the domain hear it")
+    wait_until(lambda: inboxes["/same"] and inboxes["/other"], "both of the domain hear it")
     one.spin(0.1)
-    assert heard == {"/same": [3], "/other": [3], "/elsewhere": []}
+    assert inboxes["/same"] == [(3, None)]
+    assert inboxes["/elsewhere"] == []
     # What came by the network has a sender.
-    (link,) = [link for link in links if link is not None]
+    ((number, link),) = inboxes["/other"]
+    assert number == 3
     assert link.publisher_gid == publisher.gid
     assert link.sequence_number == 1
     assert 0 <= link.received_timestamp - link.source_timestamp < 10**10
