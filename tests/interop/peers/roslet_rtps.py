@@ -44,8 +44,7 @@ def main():
 
     reactor = Reactor()
     url = next((word for word in sys.argv if word.startswith("ros2:")), None)
-    sizes = {"fragment_size": 1400} if "small_fragments" in sys.argv else {}
-    domain = Domain(reactor, on_event, parse_ros2_network(url, os.environ), **sizes)
+    domain = Domain(reactor, on_event, parse_ros2_network(url, os.environ))
     participant = domain.participant
     ends = time.monotonic() + 30.0
     with reactor.lock:
