@@ -1,5 +1,5 @@
 """A roslet peer on the participant itself, without a node. roslet_rtps.py ROLE COUNT [SIZE] [best_effort] [transient_local]
-[small_fragments] [ros2://...]
+[ros2://...]
 
 The same facts in the same words as rclpy_rtps.py and cyclone_rtps.py.
 """
