@@ -643,6 +643,16 @@ def test_samples_that_come_too_early_are_held_to_the_bound() -> None:
     assert proxy.held_bytes == 0
 
 
+def test_samples_of_no_octets_that_come_too_early_are_held_and_forgotten() -> None:
+    victim, reader = met()
+    for sequence in (3, 4, 5):
+        victim.take(hand.message(hand.data(WRITER, sequence, b"", flags=0)))
+    assert len(reader.proxies[PREFIX + WRITER].held) == 3
+    victim.take(hand.departure())
+    assert reader.proxies == {}
+    assert victim.counters == {}
+
+
 def test_events_that_nobody_takes_stop_at_the_bound() -> None:
     victim, _ = met(limits=Limits(events=5))
     for sequence in range(1, 30):

@@ -93,3 +93,19 @@ def test_closing_the_node_ends_its_calls(two: tuple[roslet.Node, roslet.Node]) -
         future.result(1)
     with pytest.raises(roslet.NodeClosed):
         client.call_async(data=True)
+
+
+def test_a_predicate_may_ask_whether_a_service_is_there(make2: Ros2Nodes) -> None:
+    """It is looked at while another thread has the loop as well."""
+    node, other = make2("node"), make2("other")
+    client = other.client("/late", "std_srvs/srv/Trigger")
+    asked: list[bool] = []
+
+    def there() -> bool:
+        asked.append(client.wait(0.0))
+        return asked[-1]
+
+    node.start()
+    node.timer(0.1, lambda: node.service("/late", "std_srvs/srv/Trigger", lambda request: None), once=True)
+    assert other.spin_until(there, 5.0)
+    assert asked[0] is False and client.ready()

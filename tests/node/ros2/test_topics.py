@@ -11,6 +11,7 @@ import roslet
 from nodes import wait_until
 from ros2_nodes import DOMAIN, Ros2Nodes
 from roslet.gen.runtime import message_class
+from roslet.io.select import reactor
 from roslet.node import events
 from roslet.node.ros2.topics import MAX_EARLY
 
@@ -242,3 +243,23 @@ def test_a_subscription_of_any_type_gets_the_bytes(make2: Ros2Nodes) -> None:
         assert one.md5sum == kind._type_hash
     with pytest.raises(roslet.Unsupported, match="nobody publishes it yet"):
         talker.subscribe("/nothing", "*", heard.append)
+
+
+@pytest.mark.parametrize("size", [100, 8_191, 59_990, 60_010, 64_990, 65_010, 65_530, 65_540, 200_000])
+def test_what_waits_for_a_spin_is_not_overwritten_by_what_comes_behind_it(
+    make2: Ros2Nodes, size: int
+) -> None:
+    """Around each size at which a sample takes another way: buffers, datagrams, fragments."""
+    talker, listener = make2("talker"), make2("listener", "--enclave", "/other")
+    publisher = talker.publisher("/chatter", STRING, qos=roslet.QoS(30))
+    heard: list[Any] = []
+    subscription = listener.subscribe("/chatter", STRING, heard.append, qos=roslet.QoS(30))
+    assert publisher.wait_for_subscribers(1, timeout=8) and subscription.wait_for_publishers(1, timeout=8)
+    texts = [chr(97 + k) * size for k in range(20)]
+    for text in texts:
+        publisher.publish(data=text)
+    # The background thread receives them all; nobody spins meanwhile.
+    assert reactor().run_until(lambda: len(subscription._arrived) == 20, 8.0, user=False)
+    assert heard == []
+    wait_until(lambda: len(heard) == 20, "all are delivered")
+    assert [message.data for message in heard] == texts

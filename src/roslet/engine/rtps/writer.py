@@ -42,7 +42,7 @@ HEARTBEAT_LONGEST = 0.25
 BULK_DELAY = 0.005
 # Octets of sample in one datagram: below the limit of UDP over IPv4 with room for the submessages before it.
 FRAGMENT_SIZE = 65000
-# Samples from this size on go within the window of the writer's flow; smaller ones never wait.
+# Samples from this size on go within the window of the writer's flow, unless little is under way; smaller ones never wait.
 BULK = 8192
 # Octets that a small datagram takes of a socket's buffer, besides twice its size, on Linux.
 OVERHEAD = 768
@@ -161,7 +161,9 @@ class Writer:
         sequence = self.last + 1
         size = len(payload)
         kept = self.keeps or self._any_reliable
-        bulk = self.is_bulk(payload)
+        bulk = size >= BULK and (
+            size > self.fragment_size or to != b"" or not self._flow.spare(size * len(self.addresses), now)
+        )
         change: Change | None = None
         if kept or bulk or to:
             if self._lifespan is not None:
@@ -213,7 +215,7 @@ class Writer:
         wire_flags = flags | FLAG_E | (FLAG_Q if inline_qos else 0)
         pad = beat = b""
         if self._any_reliable:
-            self._since_heartbeat += 1
+            self._since_heartbeat += 1 + size // BULK
             if self._since_heartbeat >= PIGGYBACK:
                 self._since_heartbeat = 0
                 pad = bytes(-size & 3)
@@ -388,7 +390,8 @@ class Writer:
         behind = [one for one in self.proxies.values() if one.reliable and one.acked < self.last]
         if not behind:
             return
-        if self._directed or len(behind) == 1:
+        if self._directed or len(behind) == 1 or 2 * len(behind) <= len(self.addresses):
+            # Whoever has everything would answer too.
             for one in behind:
                 if self._directed:
                     self._repairs.tell_skipped(one.guid, self.last)

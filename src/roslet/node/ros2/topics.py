@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from roslet.wire.rtps.data import Data
     from roslet.wire.rtps.endpoint_data import EndpointData
 
+# A sample that is longer has come in fragments, and is in memory of its own; others lie in the datagram's buffer.
+DATAGRAM = 65536
 # Bytes that a publisher's own buffer grows to; a larger message is gathered into a buffer of its own, which the writer
 # keeps without a further copy.
 MAX_BUFFER = 60_000
@@ -66,6 +68,7 @@ class _Endpoint:
     _network: Ros2Network
     _listeners: list[Callable[[events.Event], object]]
     _early: deque[events.Event]
+    _before: deque[str]
     _on_connect: list[Callable[[str], None]]
     _on_disconnect: list[Callable[[str], None]]
 
@@ -92,8 +95,17 @@ class _Endpoint:
 
     def _matched(self, peer: str, gid: bytes, matched: bool) -> None:
         self._tell((events.Matched if matched else events.Unmatched)(peer, gid))
+        if matched and not self._on_connect:
+            self._before.append(peer)
         for function in self._on_connect if matched else self._on_disconnect:
             self.node._call_back(function, peer)
+
+    def on_connect(self, function: Callable[[str], None]) -> None:
+        """Call `function(name of the peer's node)` inside spin when a peer is matched; the first function is also called for
+        those that were there before it."""
+        self._on_connect.append(function)
+        while self._before:
+            self.node._call_back(function, self._before.popleft())
 
     def _incompatible(self, peer: str, gid: bytes, policies: tuple[str, ...], offers: bool) -> None:
         what = "requests more than this publisher offers" if offers else "offers less than is requested here"
@@ -133,6 +145,7 @@ class Ros2Publisher(_Endpoint, Publisher):
         self._network = network
         self._listeners = []
         self._early = deque(maxlen=MAX_EARLY)
+        self._before = deque(maxlen=MAX_EARLY)
         self._dropped = 0
         self._policies = to_dds(qos)
         # For local subscriptions that come late.
@@ -270,6 +283,7 @@ class Ros2Subscription(_Endpoint, Subscription):
         self._network = network
         self._listeners = []
         self._early = deque(maxlen=MAX_EARLY)
+        self._before = deque(maxlen=MAX_EARLY)
         self._policies = to_dds(qos)
         self._max_message = max_message
         self._background = False
@@ -292,7 +306,7 @@ class Ros2Subscription(_Endpoint, Subscription):
         if size > self._max_message:
             self.node._count("message-too-large")
             return
-        if size <= MAX_BUFFER:
+        if size <= DATAGRAM:
             payload = bytearray(payload)  # the datagram's buffer is not ours
         elif size > LARGE:
             keep_large_blocks()
