@@ -40,6 +40,13 @@ def main() -> int:
     parser.add_argument(
         "--subscribers", type=int, default=1, help="wait for so many listeners at the start (default 1)"
     )
+    parser.add_argument(
+        "--settle",
+        type=float,
+        default=0.0,
+        metavar="SECONDS",
+        help="then wait so long: a listener of another kind may find us later",
+    )
     parser.add_argument("--json", action="store_true", help="report every second, in JSON lines")
     arguments = parser.parse_args()
 
@@ -63,6 +70,7 @@ def main() -> int:
         ping.wait_for_subscribers(arguments.subscribers, timeout=10.0)
         pong.wait_for_publishers(timeout=2.0)
         found = {"found": time.monotonic() - began, "subscribers": ping.subscriber_count}
+        node.sleep(arguments.settle)
 
         def report(number: int, final: bool) -> None:
             figures: dict[str, Any] = {"sent": number, "returned": len(round_trips), "altered": altered}

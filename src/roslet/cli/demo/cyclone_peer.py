@@ -54,15 +54,16 @@ def main(domain: int, count: int, seconds: float) -> int:
     waitset = WaitSet(participant)
     waitset.attach(ReadCondition(reader, SampleState.Any | ViewState.Any | InstanceState.Any))
     report(0, 0, False)
-    heard = wrong = 0
+    heard = wrong = number = 0
     end, next_report = time.monotonic() + seconds, time.monotonic() + 1.0
     while heard < count and time.monotonic() < end:
         waitset.wait(duration(milliseconds=100))
         for one in reader.take(1000):
             if one.sample_info.valid_data:
                 heard += 1
-                expected = struct.pack("<3f", 0.1 * heard, 10.03 * heard, 3.003 * heard)
-                if struct.pack("<3f", one.x, one.y, one.z) != expected:
+                before, number = number, round(one.x / 0.1)
+                expected = struct.pack("<3f", 0.1 * number, 10.03 * number, 3.003 * number)
+                if number != before + 1 or struct.pack("<3f", one.x, one.y, one.z) != expected:
                     wrong += 1
         if time.monotonic() >= next_report:
             next_report += 1.0

@@ -24,6 +24,9 @@ WIDTH, HEIGHT = 320, 240
 FLOOR_SECONDS = 1.0
 # Seconds beyond the planned ones for processes to start, find each other and end.
 GRACE = 15.0
+# Seconds between the talker's finding a CycloneDDS reader and the first message: that reader takes only what is sent after
+# it has found the talker, which no writer is told.
+SETTLE = 1.0
 COORDINATE = "mros_comm_measure/Coordinate"
 ROS1, ROS2 = "ROS 1", "ROS 2"
 CYCLONE = "CycloneDDS"
@@ -117,7 +120,7 @@ class _Demo:
                 program.wait_ready(GRACE)
             cast["talker"] = programs.start(
                 "coordinate_talker.py", "--count", self.points, "--rate", self.rate,
-                "--subscribers", len(cast),
+                "--subscribers", len(cast), "--settle", SETTLE,
             )  # fmt: skip
             self.say(f"processes: {', '.join(program.name for program in programs.all)}")
             if python is None:
