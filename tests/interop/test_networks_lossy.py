@@ -45,4 +45,3 @@ def test_what_we_write_arrives_whole(tmp_path: pathlib.Path, peer: str) -> None:
 @pytest.mark.parametrize("peer", ["kilted", "cyclone"])
 def test_what_a_peer_writes_arrives_whole(tmp_path: pathlib.Path, peer: str) -> None:
     exchange(tmp_path, peer, "roslet")
-

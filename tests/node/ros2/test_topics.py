@@ -263,3 +263,28 @@ def test_what_waits_for_a_spin_is_not_overwritten_by_what_comes_behind_it(
     assert heard == []
     wait_until(lambda: len(heard) == 20, "all are delivered")
     assert [message.data for message in heard] == texts
+
+
+def test_a_deadline_within_one_process_is_missed_as_between_two(make2: Ros2Nodes) -> None:
+    node = make2("node")
+    qos = roslet.QoS(1, deadline=0.1)
+    publisher = node.publisher("/chatter", UINT32, qos=qos)
+    subscription = node.subscribe("/chatter", UINT32, lambda message: None, qos=qos)
+    told: list[tuple[str, type]] = []
+    publisher.on_event(lambda event: told.append(("publisher", type(event))))
+    subscription.on_event(lambda event: told.append(("subscription", type(event))))
+    publisher.publish(data=1)
+    for end in ("publisher", "subscription"):
+        wait_until(lambda end=end: (end, events.DeadlineMissed) in told, end)  # type: ignore[misc]
+
+
+def test_what_has_outlived_its_lifespan_is_not_given_to_a_late_subscription(make2: Ros2Nodes) -> None:
+    node = make2("node")
+    for topic, lifespan, expected in (("/short", 0.05, []), ("/long", 60.0, [7])):
+        qos = roslet.QoS(5, durability="transient_local", lifespan=lifespan)
+        node.publisher(topic, UINT32, qos=qos).publish(data=7)
+        node.sleep(0.1)
+        heard: list[Any] = []
+        node.subscribe(topic, UINT32, heard.append, qos=roslet.QoS(5, durability="transient_local"))
+        node.sleep(0.1)
+        assert [message.data for message in heard] == expected

@@ -23,7 +23,8 @@ def _anywhere(host: str) -> bool:
 
 class Common:
     """`header` of our messages; `outbox` of what goes out; `counters` of what was dropped; `deliver` takes events;
-    `here` tells whether an address is of this host; `assembling` and `holding` are the octets of samples that are not whole, and that came too early."""
+    `here` tells whether an address is of this host; `assembling` and `holding` are the octets of samples that are not
+    whole, and that came too early."""
 
     def __init__(
         self,

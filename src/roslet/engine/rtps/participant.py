@@ -233,9 +233,7 @@ class Participant:
         endpoint = self._endpoint(topic, type_name, qos, b"\x02" if keyed else b"\x03", unicast)
         kind, lease = qos.liveliness
         wrote = self._wrote if kind == MANUAL_BY_PARTICIPANT and lease < INFINITE else None
-        writer = Writer(
-            endpoint, self._common, self._fragment_size, self._far_fragment_size, wrote
-        )
+        writer = Writer(endpoint, self._common, self._fragment_size, self._far_fragment_size, wrote)
         writer.accepts = accepts
         self._all_writers[writer.entity_id] = writer
         self.sedp.announce(endpoint, now)

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 # A sample that is longer has come in fragments, and is in memory of its own; others lie in the datagram's buffer.
 DATAGRAM = 65536
+# Seconds that a message without a lifespan is good for.
+FOREVER = float("inf")
 # Bytes that a publisher's own buffer grows to; a larger message is gathered into a buffer of its own, which the writer
 # keeps without a further copy.
 MAX_BUFFER = 60_000
@@ -149,7 +151,9 @@ class Ros2Publisher(_Endpoint, Publisher):
         self._dropped = 0
         self._policies = to_dds(qos)
         # For local subscriptions that come late.
-        self._kept: deque[Message] | None = deque(maxlen=qos.depth if not self._wait else MAX_KEPT)
+        self._kept: deque[tuple[Message, float]] | None = deque(
+            maxlen=qos.depth if not self._wait else MAX_KEPT
+        )
         if not self._latch:
             self._kept = None
         # Whether a message that nobody outside gets need not be known to the writer: it counts for deadline and liveliness.
@@ -241,15 +245,22 @@ class Ros2Publisher(_Endpoint, Publisher):
 
     def _deliver_locally(self, message: Message) -> None:
         for subscription in self._local:
-            subscription._deliver_later(self._for_local(subscription, message), None)
+            self._deliver_to(subscription, message)
         if self._kept is not None:
-            self._kept.append(message.copy())
+            self._kept.append((message.copy(), monotonic() + (self.qos.lifespan or FOREVER)))
+
+    def _deliver_to(self, subscription: Subscription, message: Message) -> None:
+        if isinstance(subscription, Ros2Subscription):
+            subscription._note_sample()
+        subscription._deliver_later(self._for_local(subscription, message), None)
 
     def _attach(self, subscription: Subscription) -> None:
         super()._attach(subscription)
         if self._kept is not None and subscription.qos.durability == "transient_local":
-            for message in self._kept:
-                subscription._deliver_later(self._for_local(subscription, message), None)
+            now = monotonic()
+            for message, until in self._kept:
+                if now < until:
+                    self._deliver_to(subscription, message)
 
     @staticmethod
     def _for_local(subscription: Subscription, message: Message) -> Any:
@@ -311,6 +322,13 @@ class Ros2Subscription(_Endpoint, Subscription):
         elif size > LARGE:
             keep_large_blocks()
         self._deliver_later(payload, (proxy.guid, value.sequence, time, self._network.now()))
+
+    def _note_sample(self) -> None:
+        """A message of this process has come: for the deadline, which the reader keeps."""
+        if self.qos.deadline is not None and self._reader is not None:
+            with self._network.reactor.lock:
+                self._reader.note_sample(self._network.reactor.now())
+                self._network.shell.flush()
 
     def in_loop(self, callback: Callable[[Any], object]) -> None:
         """Call `callback` in the loop whoever runs it, with the reactor's lock held: it must be quick and of ours."""
