@@ -33,7 +33,7 @@ def line(cost: Cost) -> str:
 
 def plot(costs: list[Cost], path: str) -> None:
     """Packets and memory over nodes, on logarithmic scales."""
-    import matplotlib
+    import matplotlib  # type: ignore[import-not-found,unused-ignore]
 
     matplotlib.use("svg")
     matplotlib.rcParams["svg.hashsalt"] = "roslet"

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 import peers
-from interop.namespace import Namespace, Program
+from interop.namespace import Namespace, Program, connect
 
 PROGRAM = peers.ROOT / "tests/interop/peers/rclpy_robot.py"
 STRING_HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
@@ -267,3 +267,31 @@ def test_the_doctor_without_anybody_and_without_a_route_for_multicast(tmp_path: 
     assert code == 0
     assert ("multicast", "warning", "ip route add 239.0.0.0/8 dev lo") in about
     assert [level for name, level, _ in about if name == "participants"] == ["warning"]
+
+
+def test_the_doctor_hears_another_host_and_names_an_interface_without_multicast(
+    tmp_path: pathlib.Path,
+) -> None:
+    for name in ("here", "there"):
+        (tmp_path / name).mkdir()
+    with (
+        Namespace(tmp_path / "here", route=False) as here,
+        Namespace(tmp_path / "there", route=False) as there,
+    ):
+        connect(here, there, "cable", "10.0.1")
+        there.start(str(peers.require("kilted")), str(PROGRAM), name="robot").wait_for("ready", 60.0)
+        rows = json.loads(Command(here).outcome("doctor", "--for", "4", "--json")[1])
+        texts = [row["text"] for row in rows]
+        assert "cable (10.0.1.1) sends to 239.255.0.1 and hears itself" in texts
+        assert "announcements of all 1 participants come in" in texts
+        assert next(row["text"] for row in rows if row["about"] == "participants").startswith(
+            "10.0.1.2: eProsima Fast DDS"
+        )
+        here.run("ip link set cable multicast off")
+        rows = json.loads(Command(here).outcome("doctor", "--for", "0.5", "--json")[1])
+        assert {
+            "about": "interfaces",
+            "level": "warning",
+            "text": "cable has multicast switched off",
+            "remedy": "ip link set cable multicast on, or name the others in $ROS_STATIC_PEERS",
+        } in rows

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import pytest
 
 from interop import ros2_exchange as exchange
-from interop.ros2_peers import Host, Peer, wait_until
+from interop.ros2_peers import PATIENCE, Host, Peer, wait_until
 
 STRING_HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 QOS = {
@@ -88,6 +88,13 @@ def test_a_service_is_listed_with_its_type_and_by_its_node(sides: tuple[Peer, Pe
     wait_until(lambda: service not in sees.ask("services"), "the service is gone")
 
 
+def listed(peer: Peer, name: str, there: bool, patience: float = PATIENCE) -> None:
+    """Wait until a peer lists a node, or no longer does."""
+    wait_until(
+        lambda: (name in peer.ask("nodes")) == there, f"{peer.kind}: {name} is there: {there}", patience
+    )
+
+
 @pytest.mark.parametrize("kind", ["kilted", "jazzy"])
 def test_a_node_that_closes_is_gone_within_a_second(tmp_path: pathlib.Path, kind: str) -> None:
     """And what it had; also where the other nodes of its process go on."""
@@ -98,16 +105,12 @@ def test_a_node_that_closes_is_gone_within_a_second(tmp_path: pathlib.Path, kind
             peer.ask("subscription", "s", "/gone", exchange.STRING, 0, {})
             others = [witness] if peer is theirs else [witness, theirs]
             for other in others:
-                wait_until(lambda peer=peer, other=other: peer.node in other.ask("nodes"), "the node is listed")  # type: ignore[misc]
+                listed(other, peer.node, True)
                 wait_until(lambda other=other: other.ask("counts", "/gone") > [0, 0], "so is the topic")  # type: ignore[misc]
             peer.ask("close_node")
             closed = time.monotonic()
             for other in others:
-                wait_until(
-                    lambda peer=peer, other=other: peer.node not in other.ask("nodes"),  # type: ignore[misc]
-                    f"{peer.node} is gone from {other.kind}",
-                    closed + GONE - time.monotonic(),
-                )
+                listed(other, peer.node, False, closed + GONE - time.monotonic())
             if peer is not theirs:
                 continue
             wait_until(lambda: "/gone" not in witness.ask("topics"), "the topic is gone", GONE)

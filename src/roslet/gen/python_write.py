@@ -280,7 +280,7 @@ class Serializer(Codec):
         count = n
         if isinstance(operation, Text) and operation.wide:
             yield "%s = _encode_wide(%s, False)" % (data, value)
-            unit = 2
+            unit = 4
         elif isinstance(operation, Text):
             yield "%s = %s.encode()" % (data, value)
             count = n + " + 1" if operation.terminator else n

@@ -52,14 +52,14 @@ def _port(text: str) -> int:
 
 
 def parse_network(network: "str | None", master: "str | None" = None) -> "tuple[str, str]":
-    """The URL of a network in full, and the URI of its master.
+    """The URL of a ROS 1 network in full, and the URI of its master.
 
     `network` is "ros1://host:port", "ros1://host" for port 11311, or "ros1://" for `master` (what
     $ROS_MASTER_URI holds; localhost where that is empty too). Raises Unsupported for the ROS 2 network,
     InvalidName for anything else.
     """
     if network is None or network.startswith("ros2:"):
-        raise Unsupported('the ROS 2 network is not there yet; use network="ros1://host:port" or "ros1://"')
+        raise Unsupported("the ROS 2 network has no master; write ros1://host:port or ros1://")
     scheme, found, rest = network.partition("://")
     if scheme != "ros1" or not found:
         raise InvalidName("%r is no network; write ros1://host:port" % network)

@@ -126,6 +126,10 @@ class Client:
             return
         future.set_result(response)
 
+    def ready(self) -> bool:
+        """Whether the service is there now; ROS 1 asks the master."""
+        raise NotImplementedError
+
     def wait(self, timeout: float | None = None) -> bool:
         """Serve until the service is there; false after `timeout` seconds, or when the node closes."""
         raise NotImplementedError

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections import deque
 
+from roslet.errors import Unsupported
 from roslet.node.convert import message_of
 
 TYPE_CHECKING = False
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self
 
+    from roslet.node.events import Event
     from roslet.node.node import Node
     from roslet.node.qos import QoS
     from roslet.wire.message import Message
@@ -107,6 +109,16 @@ class Publisher:
     def on_disconnect(self, function: Callable[[str], None]) -> None:
         """Call `function(name of the subscriber)` inside spin when a subscriber goes."""
         self._on_disconnect.append(function)
+
+    def on_event(self, function: Callable[[Event], object]) -> None:
+        """ROS 2: call `function(event)` inside spin for what `roslet.node.events` has. The first function is also told what
+        came before it. Raises Unsupported on ROS 1."""
+        raise Unsupported("on_event: the ROS 1 network tells no such events")
+
+    @property
+    def gid(self) -> bytes:
+        """ROS 2: the 16 octets that name this publisher in the graph. Raises NodeClosed, Unsupported on ROS 1."""
+        raise Unsupported("gid: the ROS 1 network has no such thing")
 
     def wait_for_subscribers(self, count: int = 1, timeout: float | None = None) -> bool:
         """Serve until at least `count` subscribers are connected; false after `timeout` seconds."""
@@ -257,6 +269,16 @@ class Subscription:
             "malformed": self.malformed,
             "publishers": self.publisher_count,
         }
+
+    def on_event(self, function: Callable[[Event], object]) -> None:
+        """ROS 2: call `function(event)` inside spin for what `roslet.node.events` has. The first function is also told what
+        came before it. Raises Unsupported on ROS 1."""
+        raise Unsupported("on_event: the ROS 1 network tells no such events")
+
+    @property
+    def gid(self) -> bytes:
+        """ROS 2: the 16 octets that name this subscription in the graph. Raises NodeClosed, Unsupported on ROS 1."""
+        raise Unsupported("gid: the ROS 1 network has no such thing")
 
     def wait_for_publishers(self, count: int = 1, timeout: float | None = None) -> bool:
         """Serve until at least `count` publishers are connected; false after `timeout` seconds."""

@@ -178,8 +178,8 @@ def tables():
 
 
 def keyed(key, topic, type_name):
-    """A reader of a keyed topic, which a node does not have: the participant's own. It tells of samples by their payload, and
-    of instances by their state. The key is a string, and the first field; Cyclone sends no key hash."""
+    """A reader of a keyed topic, which a node does not have: the participant's own. It tells of samples by their payload,
+    and of instances by their state. The key is a string, and the first field; Cyclone sends no key hash."""
     from roslet.engine.rtps.events import InstanceChanged
     from roslet.wire.rtps import qos as policies
 
@@ -216,8 +216,8 @@ def begin(name, namespace="", network=None):
 
 
 class Member:
-    """One of a crowd: a participant of its own with a node, a writer and a reader of /crowd. It is made below roslet.Node, whose
-    parameter services would be two thousand endpoints more for each participant of a crowd of fifty."""
+    """One of a crowd: a participant of its own with a node, a writer and a reader of /crowd. It is made below roslet.Node,
+    whose services of parameters would be hundreds of endpoints more for each to learn of."""
 
     def __init__(self, number):
         self.number = number

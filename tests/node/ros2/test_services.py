@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 import roslet
+from nodes import wait_until
 from ros2_nodes import Ros2Nodes
 
 SET_BOOL = "std_srvs/srv/SetBool"
@@ -38,7 +39,7 @@ def test_a_call_waits_for_a_server_and_finds_it(two: tuple[roslet.Node, roslet.N
     server, caller = two
     client = caller.client("/ask", SET_BOOL)
     future = client.call_async(data=True)
-    assert not client.ready()
+    assert not client.wait(timeout=0)
     server.service("/ask", SET_BOOL, answer)
     server.start()
     assert future.result(8).message == "yes"
@@ -70,15 +71,17 @@ def test_a_call_ends_with_its_timeout_and_is_forgotten(two: tuple[roslet.Node, r
     assert server.counters["handler-raised"] == 1
 
 
-def test_a_server_that_goes_is_noticed_and_one_that_returns_is_used(two: tuple[roslet.Node, roslet.Node]) -> None:
+def test_a_server_that_goes_is_noticed_and_one_that_returns_is_used(
+    two: tuple[roslet.Node, roslet.Node],
+) -> None:
     server, caller = two
-    client = caller.client("/ask", SET_BOOL)
+    client: Any = caller.client("/ask", SET_BOOL)
     server.start()
     for _ in range(3):
         with server.service("/ask", SET_BOOL, answer):
             assert client.wait(timeout=8)
             assert client.call(data=True, timeout=8).success
-        assert caller.reactor.run_until(lambda: not client.ready(), 8, user=False)
+        wait_until(lambda: not client.ready(), "it is noticed that the server has gone")
 
 
 def test_closing_the_node_ends_its_calls(two: tuple[roslet.Node, roslet.Node]) -> None:
@@ -90,3 +93,19 @@ def test_closing_the_node_ends_its_calls(two: tuple[roslet.Node, roslet.Node]) -
         future.result(1)
     with pytest.raises(roslet.NodeClosed):
         client.call_async(data=True)
+
+
+def test_a_predicate_may_ask_whether_a_service_is_there(make2: Ros2Nodes) -> None:
+    """It is looked at while another thread has the loop as well."""
+    node, other = make2("node"), make2("other")
+    client = other.client("/late", "std_srvs/srv/Trigger")
+    asked: list[bool] = []
+
+    def there() -> bool:
+        asked.append(client.wait(0.0))
+        return asked[-1]
+
+    node.start()
+    node.timer(0.1, lambda: node.service("/late", "std_srvs/srv/Trigger", lambda request: None), once=True)
+    assert other.spin_until(there, 5.0)
+    assert asked[0] is False and client.ready()

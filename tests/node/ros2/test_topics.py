@@ -11,6 +11,7 @@ import roslet
 from nodes import wait_until
 from ros2_nodes import DOMAIN, Ros2Nodes
 from roslet.gen.runtime import message_class
+from roslet.io.select import reactor
 from roslet.node import events
 from roslet.node.ros2.topics import MAX_EARLY
 
@@ -45,7 +46,8 @@ def test_within_one_process_nothing_is_serialised(make2: Ros2Nodes, serialised: 
     heard: list[Any] = []
     talker.subscribe("/chatter", UINT32, heard.append)
     listener.subscribe("/chatter", UINT32, heard.append)
-    message: Any = message_class("ros2", UINT32)(data=7)
+    kind: Any = message_class("ros2", UINT32)
+    message = kind(data=7)
     publisher.publish(message)
     wait_until(lambda: len(heard) == 2, "both hear it")
     assert serialised == []
@@ -160,24 +162,28 @@ def test_nodes_of_one_network_share_a_participant_and_those_of_two_do_not(make2:
     participants = [node._network.shell.participant for node in (one, same, other, elsewhere)]  # type: ignore[attr-defined]
     assert len({id(one) for one in participants}) == 3
     assert participants[0] is participants[1]
-    heard: dict[str, list[int]] = {}
-    links: list[Any] = []
+    inboxes: dict[str, list[tuple[Any, Any]]] = {}
+
+    def listen(node: roslet.Node) -> None:
+        inbox = inboxes[node.name] = []
+
+        def heard(message: Any, link: Any = None) -> None:
+            inbox.append((message.data, link))
+
+        node.subscribe("/t", UINT32, heard, with_link=True)
+
     for node in (same, other, elsewhere):
-        inbox = heard[node.name] = []
-        node.subscribe(
-            "/t",
-            UINT32,
-            lambda message, link, inbox=inbox: (inbox.append(message.data), links.append(link)),
-            with_link=True,
-        )
+        listen(node)
     publisher = one.publisher("/t", UINT32)
     assert publisher.wait_for_subscribers(2, timeout=8)
     publisher.publish(data=3)
-    wait_until(lambda: heard["/same"] and heard["/other"], "both of the domain hear it")
+    wait_until(lambda: inboxes["/same"] and inboxes["/other"], "both of the domain hear it")
     one.spin(0.1)
-    assert heard == {"/same": [3], "/other": [3], "/elsewhere": []}
+    assert inboxes["/same"] == [(3, None)]
+    assert inboxes["/elsewhere"] == []
     # What came by the network has a sender.
-    (link,) = [link for link in links if link is not None]
+    ((number, link),) = inboxes["/other"]
+    assert number == 3
     assert link.publisher_gid == publisher.gid
     assert link.sequence_number == 1
     assert 0 <= link.received_timestamp - link.source_timestamp < 10**10
@@ -237,3 +243,48 @@ def test_a_subscription_of_any_type_gets_the_bytes(make2: Ros2Nodes) -> None:
         assert one.md5sum == kind._type_hash
     with pytest.raises(roslet.Unsupported, match="nobody publishes it yet"):
         talker.subscribe("/nothing", "*", heard.append)
+
+
+@pytest.mark.parametrize("size", [100, 8_191, 59_990, 60_010, 64_990, 65_010, 65_530, 65_540, 200_000])
+def test_what_waits_for_a_spin_is_not_overwritten_by_what_comes_behind_it(
+    make2: Ros2Nodes, size: int
+) -> None:
+    """Around each size at which a sample takes another way: buffers, datagrams, fragments."""
+    talker, listener = make2("talker"), make2("listener", "--enclave", "/other")
+    publisher = talker.publisher("/chatter", STRING, qos=roslet.QoS(30))
+    heard: list[Any] = []
+    subscription = listener.subscribe("/chatter", STRING, heard.append, qos=roslet.QoS(30))
+    assert publisher.wait_for_subscribers(1, timeout=8) and subscription.wait_for_publishers(1, timeout=8)
+    texts = [chr(97 + k) * size for k in range(20)]
+    for text in texts:
+        publisher.publish(data=text)
+    # The background thread receives them all; nobody spins meanwhile.
+    assert reactor().run_until(lambda: len(subscription._arrived) == 20, 8.0, user=False)
+    assert heard == []
+    wait_until(lambda: len(heard) == 20, "all are delivered")
+    assert [message.data for message in heard] == texts
+
+
+def test_a_deadline_within_one_process_is_missed_as_between_two(make2: Ros2Nodes) -> None:
+    node = make2("node")
+    qos = roslet.QoS(1, deadline=0.1)
+    publisher = node.publisher("/chatter", UINT32, qos=qos)
+    subscription = node.subscribe("/chatter", UINT32, lambda message: None, qos=qos)
+    told: list[tuple[str, type]] = []
+    publisher.on_event(lambda event: told.append(("publisher", type(event))))
+    subscription.on_event(lambda event: told.append(("subscription", type(event))))
+    publisher.publish(data=1)
+    for end in ("publisher", "subscription"):
+        wait_until(lambda end=end: (end, events.DeadlineMissed) in told, end)  # type: ignore[misc]
+
+
+def test_what_has_outlived_its_lifespan_is_not_given_to_a_late_subscription(make2: Ros2Nodes) -> None:
+    node = make2("node")
+    for topic, lifespan, expected in (("/short", 0.05, []), ("/long", 60.0, [7])):
+        qos = roslet.QoS(5, durability="transient_local", lifespan=lifespan)
+        node.publisher(topic, UINT32, qos=qos).publish(data=7)
+        node.sleep(0.1)
+        heard: list[Any] = []
+        node.subscribe(topic, UINT32, heard.append, qos=roslet.QoS(5, durability="transient_local"))
+        node.sleep(0.1)
+        assert [message.data for message in heard] == expected

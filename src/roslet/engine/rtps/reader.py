@@ -191,7 +191,7 @@ class Reader:
         """A DATA of a matched writer."""
         sequence = value.sequence
         if self._period is not None:
-            self._note_deadline(now)
+            self.note_sample(now)
         if sequence == proxy.next and (proxy.synced or not proxy.reliable or sequence == 1):
             # The ordinary case first. There is nothing before the first sample, whatever the writer has told us.
             if proxy.plain and self.sink is not None:
@@ -319,7 +319,7 @@ class Reader:
 
     # -- DEADLINE
 
-    def _note_deadline(self, now: float) -> None:
+    def note_sample(self, now: float) -> None:
         """A sample came: of a topic without a key it is due again a period from now."""
         if self.instances is None and self._period is not None:
             self._miss_at = now + self._period

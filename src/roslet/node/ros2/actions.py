@@ -418,7 +418,9 @@ class ActionClient:
                 answer.set_exception(future.exception() or RosletError(self.name))
                 return
             response = future.result(0)
-            self._goals.result(goal.uuid, response.status)
+            goal.status = response.status
+            # Feedback that came before the result may still wait for spin to deliver it.
+            self._network.reactor.call_soon(lambda: self._goals.forget(goal.uuid), user=True)
             answer.set_result((STATES[response.status], response.result))
 
         self._get_result.call_async(request).add_done_callback(answered)
