@@ -31,6 +31,8 @@ OTHER = {
     "roslet-lookup",
     "utf-8",
     "utf-16-be",
+    "utf-32-be",
+    "utf-32-le",
     "utf-16-le",
 }
 # Reasons of one word.
