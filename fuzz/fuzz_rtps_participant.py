@@ -21,6 +21,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "src"))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests"))
 
 from engine.rtps import hand
+from roslet.engine.rtps.fragments import cost
 from roslet.engine.rtps.history import HistoryFull
 from roslet.engine.rtps.limits import Limits
 from roslet.engine.rtps.participant import Participant
@@ -94,7 +95,7 @@ def within(participant: Participant) -> None:
                 )
             if len(proxy.assemblies) > LIMITS.assemblies:
                 raise AssertionError("assemblies")
-            held += sum(one.size for one in proxy.assemblies.values())
+            held += sum(cost(one.size, one.fragment_size) for one in proxy.assemblies.values())
     if held != LIMITS.assembly_bytes - participant._common.assembling.left or held > LIMITS.assembly_bytes:
         raise AssertionError(f"assemblies of {held} octets, {participant._common.assembling.left} left")
 

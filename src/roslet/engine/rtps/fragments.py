@@ -37,6 +37,11 @@ class Budget:
             self._taken.pop(prefix, None)
 
 
+def cost(size: int, fragment_size: int) -> int:
+    """Octets that an Assembly of such a sample takes: the sample, and one for each fragment."""
+    return size + (size + fragment_size - 1) // fragment_size
+
+
 class Assembly:
     """One sample in the making. Fragments may come in any order, again, and several a submessage."""
 

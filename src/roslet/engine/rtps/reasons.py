@@ -36,6 +36,7 @@ REASONS = {
     "endpoint-without-type": "an endpoint without a type",
     "endpoint-kind-unknown": "an endpoint that is neither reader nor writer",
     "endpoint-of-another-participant": "an endpoint announced by a participant that it does not belong to",
+    "discovery-bytes-full": "an endpoint whose announcement is beyond what its participant, or all together, may take",
     "endpoints-full": "an endpoint beyond the bound of its participant",
     "participant-message-truncated": "a message about liveliness that ends too early",
     "participant-message-invalid": "a message about liveliness that is none",
