@@ -200,6 +200,13 @@ class Reactor:
             except BlockingIOError:
                 return  # full: it wakes the loop as it is
 
+    def interrupt(self) -> None:
+        """The same whoever calls: a signal handler too, which runs in the very thread that sleeps. Takes no lock."""
+        try:
+            os.write(self._wake_write, b"\0")
+        except BlockingIOError:
+            return
+
     def _woken(self, events: int) -> None:
         try:
             os.read(self._wake_read, 64)

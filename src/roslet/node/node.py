@@ -78,7 +78,7 @@ class Node(GraphApi):
         self._close_begun = False
         self._callbacks_waiting = 0
         self._futures: weakref.WeakSet[Future[Any]] = weakref.WeakSet()  # those that somebody may wait for
-        self._network: Network = make(self, name, network, namespace, arguments, anonymous, env)
+        self._network: Network = self._make(name, network, namespace, arguments, anonymous, env)
         self.name = self._network.name
         self.network = self._network.url
         self.namespace = self.name[: self.name.rfind("/")] or "/"
@@ -90,6 +90,9 @@ class Node(GraphApi):
         except BaseException:
             self.close()
             raise
+
+    def _make(self, *given: Any) -> Network:
+        return make(self, *given)
 
     # -- topics
 

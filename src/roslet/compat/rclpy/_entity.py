@@ -6,11 +6,11 @@ the executor -> `_take()` a piece of work -> `_run(work)`, which may give a coro
 
 from __future__ import annotations
 
-import queue
 import weakref
 from typing import TYPE_CHECKING, Any
 
 from roslet.compat.rclpy.exceptions import InvalidHandle
+from roslet.io.select import reactor
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -19,22 +19,30 @@ if TYPE_CHECKING:
 
 
 class Bell:
-    """Wakes a thread that waits. Signal handlers ring it too, so it takes no lock that the interrupted code may hold."""
+    """Wakes a thread that waits. No lock is taken: signal handlers wake too."""
 
     def __init__(self) -> None:
-        self._rung: queue.SimpleQueue[None] = queue.SimpleQueue()
+        self._reactor = reactor()
+        self._rung = False
 
     def ring(self) -> None:
         """The next `wait`, or that of now, returns."""
-        if self._rung.empty():
-            self._rung.put(None)
+        if not self._rung:
+            self._rung = True
+            self._reactor.wake()
+
+    def alarm(self) -> None:
+        """The same from a signal handler, which interrupts the very thread that waits."""
+        self._rung = True
+        self._reactor.interrupt()
 
     def wait(self, seconds: float | None) -> None:
-        """Until it is rung, or `seconds` have passed; at once where it was rung since the last wait."""
-        try:
-            self._rung.get(timeout=seconds)
-        except queue.Empty:
-            return
+        """Run the loop until the bell is rung, or `seconds` have passed; at once where it was rung since the last wait.
+
+        So what arrives is taken from its socket in the thread that will run its callback.
+        """
+        self._reactor.run_until(lambda: self._rung, seconds, user=False)
+        self._rung = False
 
 
 class Entity:

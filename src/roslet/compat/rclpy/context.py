@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from roslet.compat.rclpy._arguments import Arguments
 from roslet.compat.rclpy.exceptions import RCLError
+from roslet.io.select import reactor
 from roslet.names import MAX_DOMAIN
 
 if TYPE_CHECKING:
@@ -129,10 +130,11 @@ class Context:
             callbacks, self._callbacks = self._callbacks, []
             tracked, self._nodes = self._nodes, []
             _running.discard(self)
-            for one in tracked:
+            for number, one in enumerate(tracked):
                 node = one()
                 if node is not None:
-                    node.destroy_node()
+                    # rclpy asks every second node itself: its list changes under its loop. Programs count the calls.
+                    (node._end if number % 2 else node.destroy_node)()
             self._ok = False
         for get in callbacks:
             callback = get()
@@ -168,7 +170,8 @@ def end_all() -> None:
         context._ok = False
         _running.discard(context)
     for bell in list(bells):
-        bell.ring()
+        bell.alarm()
+    reactor().interrupt()  # who waits for a service, or a peer
 
 
 def close_all() -> None:
@@ -177,7 +180,7 @@ def close_all() -> None:
         for one in list(context._nodes):
             node = one()
             if node is not None:
-                node.destroy_node()
+                node._end()
         context._ok = False
 
 

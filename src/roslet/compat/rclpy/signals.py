@@ -11,6 +11,8 @@ import threading
 from enum import IntFlag
 from typing import TYPE_CHECKING, Any
 
+from roslet.io import interrupts
+
 if TYPE_CHECKING:
     from types import FrameType
 
@@ -34,7 +36,8 @@ def _handle(number: int, frame: FrameType | None) -> None:
     end_all()
     before = _before.get(number)
     if number == signal.SIGINT and callable(before):
-        before(number, frame)
+        # Not where the loop would lose what it has just taken from a socket.
+        (interrupts.on_sigint if before is signal.default_int_handler else before)(number, frame)
 
 
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:

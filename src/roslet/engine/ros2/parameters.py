@@ -406,7 +406,7 @@ class Parameters:
             if descriptor is not None:
                 reason = self._unsuitable(one, descriptor, True)
                 if reason:
-                    return False, "%s: %s" % (one.name, reason)
+                    return False, self._refusal(one.name, reason)
         reason = self._asked(parameters)
         if reason:
             return False, reason
@@ -435,6 +435,9 @@ class Parameters:
         raise ParameterRefused(name, reason)
 
     # -- within
+
+    def _refusal(self, name: str, reason: str) -> str:
+        return "%s: %s" % (name, reason)
 
     @staticmethod
     def _typed(name: str, value: "Any", descriptor: Descriptor) -> Parameter:

@@ -214,6 +214,10 @@ class ActionServer:
     def _finish(self, goal: engine.ServerGoal, event: int, result: Any, fields: dict[str, Any]) -> None:
         made = self._made(self.type.Result, result, fields)
         self._apply(goal, event)
+        self._settle(goal, made)
+
+    def _settle(self, goal: engine.ServerGoal, made: Any) -> None:
+        """The result of a goal that has ended goes to whoever asks."""
         with self._network.reactor.lock:
             waiting = self._goals.finish(goal, made)
             self._watch()

@@ -49,18 +49,25 @@ class Ros2Network(Network):
     title = "ROS 2"
     dialect = "ros2"
 
+    # What endpoints are made of: another API on these nodes has its own ways of delivering.
+    publisher_kind: type[Ros2Publisher] = Ros2Publisher
+    subscription_kind: type[Ros2Subscription] = Ros2Subscription
+    service_kind: type[Ros2Service] = Ros2Service
+
     def __init__(
         self,
         node: Node,
         name: str,
         url: str | None,
         namespace: str,
-        arguments: Sequence[str],
+        arguments: Sequence[str] | Ros2Arguments,
         anonymous: bool,
         environment: Mapping[str, str],
     ) -> None:
         super().__init__(node)
-        self.arguments: Ros2Arguments = Ros2Arguments(list(arguments))
+        if not isinstance(arguments, Ros2Arguments):
+            arguments = Ros2Arguments(list(arguments))
+        self.arguments: Ros2Arguments = arguments
         if anonymous:
             name = f"{name}_{os.getpid()}_{time.time_ns() // 1_000_000 + next(_serial)}"
         self.base_name = self.arguments.node_name(name)
@@ -195,7 +202,7 @@ class Ros2Network(Network):
     # -- topics
 
     def publisher(self, topic: str, message_type: Any, qos: QoS) -> Ros2Publisher:
-        publisher = Ros2Publisher(self, self.node, topic, own_classes("ros2", message_type), qos)
+        publisher = self.publisher_kind(self, self.node, topic, own_classes("ros2", message_type), qos)
         self._publishers.append(publisher)
         with self.reactor.lock:
             self.process.publishers.setdefault(topic, []).append(publisher)
@@ -217,7 +224,7 @@ class Ros2Network(Network):
         else:
             kind = own_classes("ros2", message_type)
             type_name = kind._type
-        subscription = Ros2Subscription(
+        subscription = self.subscription_kind(
             self, self.node, topic, kind, type_name, callback, qos, max_message, with_link
         )
         self._subscriptions.append(subscription)
@@ -303,7 +310,7 @@ class Ros2Network(Network):
         background: bool = False,
     ) -> Ros2Service:
         kind = own_classes("ros2", service_type, "service")
-        service = Ros2Service(self, self.node, name, kind, handler, qos, background)
+        service = self.service_kind(self, self.node, name, kind, handler, qos, background)
         self.services_made.append(service)
         return service
 

@@ -120,15 +120,19 @@ class NodeParameters:
                 presets.PARAMETERS,
                 background=True,
             )
-            for name, kind, handler in (
-                ("describe_parameters", "DescribeParameters", self._describe),
-                ("get_parameters", "GetParameters", self._get),
-                ("get_parameter_types", "GetParameterTypes", self._types),
-                ("list_parameters", "ListParameters", self._list),
-                ("set_parameters", "SetParameters", self._set),
-                ("set_parameters_atomically", "SetParametersAtomically", self._set_atomically),
-            )
+            for name, kind, handler in self._handlers()
         ]
+
+    def _handlers(self) -> tuple[tuple[str, str, Callable[[Any], Any]], ...]:
+        """(name, kind, handler) of the services."""
+        return (
+            ("describe_parameters", "DescribeParameters", self._describe),
+            ("get_parameters", "GetParameters", self._get),
+            ("get_parameter_types", "GetParameterTypes", self._types),
+            ("list_parameters", "ListParameters", self._list),
+            ("set_parameters", "SetParameters", self._set),
+            ("set_parameters_atomically", "SetParametersAtomically", self._set_atomically),
+        )
 
     def ask_in_spin(self) -> None:
         """From now on others' requests are served inside spin: the user has callbacks that decide on them."""
