@@ -30,19 +30,8 @@ NOT_JAZZY = {
     "a file of parameters": "types are printed by their names",
 }
 
-# What runs under roslet so far: all that needs no node.
-UNDER_ROSLET = (
-    "messages",
-    "serialization",
-    "type support",
-    "times",
-    "quality of service",
-    "futures",
-    "validation",
-)
 
-
-@pytest.mark.parametrize("scene", UNDER_ROSLET)
+@pytest.mark.parametrize("scene", SCENES)
 def test_roslet_says_what_is_expected(scene: str, tmp_path: pathlib.Path) -> None:
     assert under_roslet(scene, tmp_path) == file_of(scene).read_text(encoding="utf-8")
 

@@ -129,7 +129,7 @@ def create_node(
     enable_logger_service: bool = False,
 ) -> Any:
     """A node; the arguments are those of `rclpy.node.Node`."""
-    from roslet.compat.rclpy.node import Node  # type: ignore[import-untyped]
+    from roslet.compat.rclpy.node import Node
 
     return Node(
         node_name,

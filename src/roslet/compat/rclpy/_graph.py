@@ -86,7 +86,9 @@ class GraphOfNode:
 
         def ask(graph: Graph) -> Any:
             if not any((one.name, one.namespace) == (name, namespace) for one in graph.nodes()):
-                raise NodeNameNonExistentError(f"cannot get node names for nonexistent node: {namespace} {name}")
+                raise NodeNameNonExistentError(
+                    f"cannot get node names for nonexistent node: {namespace} {name}"
+                )
             return question(graph)
 
         return list(self._ask(ask).items())
@@ -107,9 +109,7 @@ class GraphOfNode:
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> Named:
         """(service, types) that a node serves. Raises NodeNameNonExistentError."""
-        return self._of(
-            node_name, node_namespace, lambda graph: graph.services((node_name, node_namespace))
-        )
+        return self._of(node_name, node_namespace, lambda graph: graph.services((node_name, node_namespace)))
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> Named:
         """(service, types) that a node calls. Raises NodeNameNonExistentError."""

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from roslet.compat.rclpy._parameters import NodeParameters
-    from roslet.wire.message import Message
     from roslet.wire.time import Time
 
 _LEVELS = {DEBUG: 10, INFO: 20, WARN: 30, ERROR: 40, FATAL: 50}
@@ -57,15 +56,10 @@ class _Told:
 class QueuedPublisher(_Told, Ros2Publisher):
     """A publisher that tells subscriptions of its own process where a message came from."""
 
-    def _deliver_locally(self, message: Message) -> None:
-        if self._local:
-            now = time.time_ns()
-            writer = self._writer
-            info = MessageInfo(now, now, _NO_GID if writer is None else writer.data.guid, self.messages)
-            for subscription in self._local:
-                subscription._deliver_later(self._for_local(subscription, message), info)
-        if self._kept is not None:
-            self._kept.append(message.copy())
+    def _local_link(self) -> MessageInfo:
+        now = time.time_ns()
+        writer = self._writer
+        return MessageInfo(now, now, _NO_GID if writer is None else writer.data.guid, self.messages)
 
 
 class QueuedSubscription(_Told, Ros2Subscription):
@@ -88,7 +82,7 @@ class QueuedSubscription(_Told, Ros2Subscription):
         return bool(self._arrived)
 
     def take_one(self, raw: bool = False) -> tuple[Any, MessageInfo] | None:
-        """The oldest message, or its bytes, and where it came from. None where there is none, or none that is well-formed."""
+        """The oldest message, or its bytes, and where it came from. None where there is no well-formed one."""
         while not self.closed:
             try:
                 message, link = self._arrived.popleft()
@@ -101,8 +95,12 @@ class QueuedSubscription(_Told, Ros2Subscription):
             info = MessageInfo(sent, received, gid, sequence)
             kind: Any = self.type
             try:
-                message = bytes(message) if raw else kind.deserialize_from(memoryview(message), 0, len(message))
-            except Exception as error:  # a peer's bytes must not end the spin, whatever they do to the decoder
+                message = (
+                    bytes(message) if raw else kind.deserialize_from(memoryview(message), 0, len(message))
+                )
+            except (
+                Exception
+            ) as error:  # a peer's bytes must not end the spin, whatever they do to the decoder
                 self._reject(error, self._network.node_of(gid) or "a publisher")
                 continue
             self.messages += 1
@@ -216,4 +214,12 @@ def merged(given: Ros2Arguments | None, own: list[str] | None) -> Ros2Arguments:
     return local
 
 
-__all__ = ["Inner", "QueuedPublisher", "QueuedService", "QueuedSubscription", "RclpyNetwork", "logger_name", "merged"]
+__all__ = [
+    "Inner",
+    "QueuedPublisher",
+    "QueuedService",
+    "QueuedSubscription",
+    "RclpyNetwork",
+    "logger_name",
+    "merged",
+]

@@ -58,9 +58,7 @@ class Store(store.Parameters):
             stop = "." if whole else ""
             return f"Parameter {name} out of range{stop} Min: {low}, Max: {high}, value: {value}"
         close = "a valid step" if whole else "close enough to a valid step"
-        return (
-            f"The parameter value for {name} is not {close}. Min: {low}, max: {high}, value: {value}, step: {step}"
-        )
+        return f"The parameter value for {name} is not {close}. Min: {low}, max: {high}, value: {value}, step: {step}"
 
 
 class NodeParameters(services.NodeParameters):
@@ -79,7 +77,10 @@ class NodeParameters(services.NodeParameters):
         return [
             Requests(
                 network.service(  # type: ignore[arg-type]
-                    network.own_service(name), message_class(f"rcl_interfaces/srv/{kind}"), handler, presets.PARAMETERS
+                    network.own_service(name),
+                    message_class(f"rcl_interfaces/srv/{kind}"),
+                    handler,
+                    presets.PARAMETERS,
                 ),
                 group,
                 None,
@@ -251,7 +252,7 @@ class ParametersOfNode:
         return [self.get_parameter_type(name) for name in names]
 
     def list_parameters(self, prefixes: Sequence[str], depth: int) -> Any:
-        """A ListParametersResult: those below any of the prefixes, all where there are none, `depth` levels deep, 0 for all."""
+        """A ListParametersResult: those below any prefix, all where there is none, `depth` levels deep, 0 for all."""
         names, found = self._store.list_parameters(list(prefixes), depth)
         return message_class("rcl_interfaces/msg/ListParametersResult")(names=names, prefixes=found)
 
@@ -269,8 +270,8 @@ class ParametersOfNode:
     # -- setting
 
     def set_parameters(self, parameter_list: Sequence[Parameter]) -> list[Any]:
-        """Set each by itself; a SetParametersResult for each. Raises ParameterNotDeclaredException where one is not declared,
-        TypeError for what is no Parameter."""
+        """Set each by itself; a SetParametersResult for each. Raises ParameterNotDeclaredException where one is not
+        declared, TypeError for what is no Parameter."""
         _check_parameters(parameter_list)
         return [self._set([one]) for one in parameter_list]
 

@@ -106,9 +106,12 @@ class Client(Inbox):
         future: Future[Any] = Future()
         asked = self._endpoint.call_async(request)
         self._pending[future] = asked
-        future._wake_when_done(lambda: self._pending.pop(future, None))
+        future._wake_when_done(lambda: self._forget(future))
         self.resolve(future, asked, lambda response: response)
         return future
+
+    def _forget(self, future: Future[Any]) -> None:
+        self._pending.pop(future, None)
 
     def remove_pending_request(self, future: Future[Any]) -> None:
         """Wait for the response of this call no more."""

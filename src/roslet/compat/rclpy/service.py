@@ -21,7 +21,10 @@ class Requests(Entity):
     a dict, a coroutine, a roslet Future, or `Then`."""
 
     def __init__(
-        self, endpoint: QueuedService, callback_group: CallbackGroup | None, handler: Callable[[Any], Any] | None
+        self,
+        endpoint: QueuedService,
+        callback_group: CallbackGroup | None,
+        handler: Callable[[Any], Any] | None,
     ) -> None:
         super().__init__(callback_group)
         self._endpoint = endpoint

@@ -17,7 +17,14 @@ if TYPE_CHECKING:
 class NumberOfEntities:
     """How many entities of each kind a waitable adds to a wait set."""
 
-    _names = ("num_subscriptions", "num_guard_conditions", "num_timers", "num_clients", "num_services", "num_events")
+    _names = (
+        "num_subscriptions",
+        "num_guard_conditions",
+        "num_timers",
+        "num_clients",
+        "num_services",
+        "num_events",
+    )
 
     def __init__(
         self,

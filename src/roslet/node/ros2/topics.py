@@ -252,7 +252,18 @@ class Ros2Publisher(_Endpoint, Publisher):
     def _deliver_to(self, subscription: Subscription, message: Message) -> None:
         if isinstance(subscription, Ros2Subscription):
             subscription._note_sample()
-        subscription._deliver_later(self._for_local(subscription, message), None)
+        subscription._deliver_later(self._for_local(subscription, message), self._local_link())
+
+    def _local_link(self) -> Any:
+        """What a subscription of this process is told of where a message came from."""
+        return None
+
+    def _happened(self, fact: Any) -> None:
+        super()._happened(fact)
+        if type(fact) is facts.LivelinessLost or type(fact) is facts.LivelinessRegained:
+            subscription: Any
+            for subscription in self._local:
+                subscription._happened(fact)
 
     def _attach(self, subscription: Subscription) -> None:
         super()._attach(subscription)
@@ -342,7 +353,7 @@ class Ros2Subscription(_Endpoint, Subscription):
             super()._deliver_later(message, link)
 
     def _deliver(self, message: Any, link: Any) -> None:
-        if link is not None:
+        if type(link) is tuple:  # from the network, not yet deserialised
             view = memoryview(message)
             gid, sequence, sent, received = link
             if self.type is None:

@@ -24,7 +24,6 @@ from roslet.engine.ros2.actions import (
     EXECUTE,
     SUCCEED,
     InvalidTransition,
-    cancel_code,
 )
 from roslet.errors import NodeClosed
 from roslet.node.ros2 import actions as roslet
@@ -146,7 +145,9 @@ class _Endpoint(roslet.ActionServer):
             return {"accepted": False}
         answer = await await_or_execute(self.owner._goal_callback, request.goal)
         if not isinstance(answer, GoalResponse):
-            self.node.log.warning("Goal request callback did not return a GoalResponse type. Ignoring goal...")
+            self.node.log.warning(
+                "Goal request callback did not return a GoalResponse type. Ignoring goal..."
+            )
             answer = GoalResponse.REJECT
         stamp = self.node.now().to_nsec()
         response = {
@@ -175,7 +176,7 @@ class _Endpoint(roslet.ActionServer):
                     continue  # it has ended meanwhile
                 canceling.append(self._network.goal_info(goal.uuid, goal.stamp))
         return {
-            "return_code": cancel_code(code, len(found), len(canceling)),
+            "return_code": code,  # rclpy says nothing of rejection but that no goal is named
             "goals_canceling": canceling,
         }
 
