@@ -41,7 +41,7 @@ class End:
 
     def __init__(self, writes: str, reads: str, sink) -> None:  # type: ignore[no-untyped-def]
         self.reactor = Reactor()
-        self.domain = Domain(self.reactor, lambda event: None, localhost=True)
+        self.domain = Domain(self.reactor, lambda event: None)
         participant = self.domain.participant
         with self.reactor.lock:
             self.writer = participant.create_writer(writes, TYPE, QOS, self.reactor.now())
@@ -54,9 +54,11 @@ class End:
 
     def write(self, data: bytearray) -> None:
         """Send a sample, as soon as there is room for it."""
-        if self.writer.full(len(data)):
-            if not self.reactor.run_until(lambda: not self.writer.full(len(data)), PATIENCE):
-                raise TimeoutError(f"no room: {self.domain.participant.counters} {self.domain.errors}")
+        size = len(data)
+        if self.writer.full(size) and not self.reactor.run_until(
+            lambda: not self.writer.full(size), PATIENCE
+        ):
+            raise TimeoutError(f"no room: {self.domain.participant.counters} {self.domain.errors}")
         with self.reactor.lock:
             now = self.reactor.now()
             self.writer.write(data, now)
@@ -240,7 +242,9 @@ def main() -> None:
         if kind == "rtt":
             taken = sorted(measure.rtt(size))
             median = statistics.median(taken)
-            print(f"rtt {size}: {median:.1f} us, {median / least:.2f} x floor, p99 {taken[len(taken) * 99 // 100]:.0f} us")
+            print(
+                f"rtt {size}: {median:.1f} us, {median / least:.2f} x floor, p99 {taken[len(taken) * 99 // 100]:.0f} us"
+            )
         else:
             rate = measure.rate(size)
             print(f"rate {size}: {rate:.0f}/s, {rate * size / 1e6:.1f} MB/s")

@@ -1,6 +1,5 @@
 """Hears mros_comm_measure/Coordinate on `ping`, checks that none is lost or altered, and sends each back on `pong`.
 
-roslet master &
 python coordinate_listener.py
 """
 
@@ -14,13 +13,13 @@ import time
 from typing import Any
 
 import roslet
-from coordinate_talker import Coordinate, coordinate
+from coordinate_talker import DEPTH, Coordinate, coordinate
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description="Checks what comes on ping and sends it back on pong.")
     parser.add_argument(
-        "--network", default="ros1://", help="default: ros1://, the master of $ROS_MASTER_URI"
+        "--network", default="ros2://", help="default: ros2://, which needs no master; or ros1://"
     )
     parser.add_argument("--count", type=int, default=0, help="end after so many messages (default 0: never)")
     parser.add_argument("--seconds", type=float, help="end after so many seconds")
@@ -28,12 +27,14 @@ def main() -> int:
     arguments = parser.parse_args()
 
     with roslet.Node("listener", network=arguments.network) as node:
-        pong = node.publisher("pong", Coordinate)
+        pong = node.publisher("pong", Coordinate, qos=DEPTH)
         heard = wrong = 0
         latest: int | None = None
 
         def callback(message: Any) -> None:
             nonlocal heard, wrong, latest
+            if not heard:  # the talker has found us; let us have found it before the first one goes back
+                pong.wait_for_subscribers(timeout=1.0)
             pong.publish(message)
             heard += 1
             number = round(message.x / 0.1)
@@ -56,7 +57,8 @@ def main() -> int:
         def done() -> bool:
             return bool(arguments.count) and heard >= arguments.count
 
-        node.subscribe("ping", Coordinate, callback)
+        node.subscribe("ping", Coordinate, callback, qos=DEPTH)
+        report(final=False)  # ready
         end = None if arguments.seconds is None else time.monotonic() + arguments.seconds
         try:
             while not node.is_shutdown and not done() and (end is None or time.monotonic() < end):

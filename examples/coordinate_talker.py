@@ -1,6 +1,5 @@
 """Publishes a point that moves, mros_comm_measure/Coordinate, on `ping`, and times its way back on `pong`.
 
-roslet master &
 python coordinate_listener.py &
 python coordinate_talker.py --rate 10
 """
@@ -17,10 +16,13 @@ from typing import Any
 
 import roslet
 
-# A type of one's own: loading its definition is all it takes.
+# A type of one's own: loading its definition is all it takes, on either network.
 Coordinate: Any = roslet.load(
     pathlib.Path(__file__).resolve().parent / "msgs" / "mros_comm_measure"
 ).mros_comm_measure.msg.Coordinate
+
+# Messages kept for the other side while it does something else; the pair checks that none is lost.
+DEPTH = 1000
 
 
 def coordinate(number: int) -> tuple[float, float, float]:
@@ -31,13 +33,24 @@ def coordinate(number: int) -> tuple[float, float, float]:
 def main() -> int:
     parser = argparse.ArgumentParser(description="A moving point on ping; round trips by way of pong.")
     parser.add_argument(
-        "--network", default="ros1://", help="default: ros1://, the master of $ROS_MASTER_URI"
+        "--network", default="ros2://", help="default: ros2://, which needs no master; or ros1://"
     )
     parser.add_argument("--rate", type=float, default=1.0, help="messages a second (default 1)")
     parser.add_argument("--count", type=int, default=0, help="end after so many messages (default 0: never)")
+    parser.add_argument(
+        "--subscribers", type=int, default=1, help="wait for so many listeners at the start (default 1)"
+    )
+    parser.add_argument(
+        "--settle",
+        type=float,
+        default=0.0,
+        metavar="SECONDS",
+        help="then wait so long: a listener of another kind may find us later",
+    )
     parser.add_argument("--json", action="store_true", help="report every second, in JSON lines")
     arguments = parser.parse_args()
 
+    began = time.monotonic()
     with roslet.Node("talker", network=arguments.network) as node:
         under_way: dict[int, float] = {}
         round_trips: list[float] = []
@@ -52,13 +65,16 @@ def main() -> int:
             else:
                 round_trips.append(time.perf_counter() - sent_at)
 
-        pong = node.subscribe("pong", Coordinate, back)
-        ping = node.publisher("ping", Coordinate)
-        ping.wait_for_subscribers(timeout=10.0)
+        pong = node.subscribe("pong", Coordinate, back, qos=DEPTH)
+        ping = node.publisher("ping", Coordinate, qos=DEPTH)
+        ping.wait_for_subscribers(arguments.subscribers, timeout=10.0)
         pong.wait_for_publishers(timeout=2.0)
+        found = {"found": time.monotonic() - began, "subscribers": ping.subscriber_count}
+        node.sleep(arguments.settle)
 
         def report(number: int, final: bool) -> None:
-            figures = {"sent": number, "returned": len(round_trips), "altered": altered, "final": final}
+            figures: dict[str, Any] = {"sent": number, "returned": len(round_trips), "altered": altered}
+            figures.update(found, final=final)
             median = statistics.median(round_trips) if round_trips else None
             if arguments.json:
                 more = {"round_trips": round_trips} if final else {"median": median}

@@ -2,10 +2,9 @@
 
 The definitions are in msgs/mros_test/msg; loading them is all that is needed.
 
-    roslet master &
     python custom_pubsub.py sub &
     python custom_pubsub.py pub
-    roslet topic echo /user_type
+    roslet topic echo /user_type --network ros1://
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="A nested type of one's own on the topic user_type.")
     parser.add_argument("role", choices=("pub", "sub", "both"), nargs="?", default="both")
     parser.add_argument(
-        "--network", default="ros1://", help="default: ros1://, the master of $ROS_MASTER_URI"
+        "--network", default="ros2://", help="default: ros2://, which needs no master; or ros1://"
     )
     parser.add_argument("--rate", type=float, default=1.0, help="messages a second (default 1)")
     parser.add_argument("--count", type=int, default=0, help="end after so many messages (default 0: never)")

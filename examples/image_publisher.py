@@ -1,6 +1,5 @@
 """Publishes sensor_msgs/Image at 10 Hz on `image`: a test picture that moves.
 
-roslet master &
 python image_viewer.py &
 python image_publisher.py
 """
@@ -12,20 +11,23 @@ import colorsys
 import json
 import sys
 import time
+from typing import Any
 
 import roslet
-from roslet.msgs.ros1.sensor_msgs.msg import Image
+
+# Pixels by which the picture moves each time.
+STEP = 4
 
 
 def picture(number: int, width: int, height: int) -> bytes:
-    """Picture `number` as rgb8 rows: slanted bands of all colours, which move by four pixels a picture."""
+    """Picture `number`, counted from 1, as rgb8 rows: slanted bands of all colours, which move by STEP pixels a picture."""
     band = bytearray()
     for at in range(width):
         band += bytes(round(255 * part) for part in colorsys.hsv_to_rgb(at / width, 1.0, 1.0))
     ring = bytes(band * 2)
     rows = []
     for y in range(height):
-        begin = 3 * ((4 * number + y) % width)
+        begin = 3 * ((STEP * number + y) % width)
         rows.append(ring[begin : begin + 3 * width])
     return b"".join(rows)
 
@@ -33,7 +35,7 @@ def picture(number: int, width: int, height: int) -> bytes:
 def main() -> int:
     parser = argparse.ArgumentParser(description="A moving test picture on the topic image.")
     parser.add_argument(
-        "--network", default="ros1://", help="default: ros1://, the master of $ROS_MASTER_URI"
+        "--network", default="ros2://", help="default: ros2://, which needs no master; or ros1://"
     )
     parser.add_argument("--rate", type=float, default=10.0, help="pictures a second (default 10)")
     parser.add_argument("--count", type=int, default=0, help="end after so many pictures (default 0: never)")
@@ -44,9 +46,10 @@ def main() -> int:
     width, height = arguments.width, arguments.height
 
     with roslet.Node("camera", network=arguments.network) as node:
-        image = node.publisher("image", Image)
+        image = node.publisher("image", "sensor_msgs/Image")
         image.wait_for_subscribers(timeout=10.0)
-        message = Image(height=height, width=width, encoding="rgb8", step=3 * width)
+        kind: Any = image.type
+        message = kind(height=height, width=width, encoding="rgb8", step=3 * width)
         message.header.frame_id = "camera"
         rate = node.rate(arguments.rate)
         number = 0
@@ -60,7 +63,7 @@ def main() -> int:
         next_report = time.monotonic() + 1.0
         try:
             while not node.is_shutdown and (not arguments.count or number < arguments.count):
-                number += 1  # publishing writes the same number into header.seq
+                number += 1
                 message.header.stamp = node.now()
                 message.data = picture(number, width, height)
                 image.publish(message)

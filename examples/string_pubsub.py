@@ -1,6 +1,5 @@
 """Publishes std_msgs/String on `chatter`, or prints what others publish there, or both.
 
-roslet master &
 python string_pubsub.py sub &
 python string_pubsub.py pub
 """
@@ -18,7 +17,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Strings on the topic chatter.")
     parser.add_argument("role", choices=("pub", "sub", "both"), nargs="?", default="both")
     parser.add_argument(
-        "--network", default="ros1://", help="default: ros1://, the master of $ROS_MASTER_URI"
+        "--network", default="ros2://", help="default: ros2://, which needs no master; or ros1://"
     )
     parser.add_argument("--rate", type=float, default=1.0, help="messages a second (default 1)")
     parser.add_argument("--count", type=int, default=0, help="end after so many messages (default 0: never)")

@@ -21,6 +21,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "src"))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests"))
 
 from engine.rtps import hand
+from roslet.engine.rtps.fragments import cost
 from roslet.engine.rtps.history import HistoryFull
 from roslet.engine.rtps.limits import Limits
 from roslet.engine.rtps.participant import Participant
@@ -79,8 +80,9 @@ def within(participant: Participant) -> None:
             raise AssertionError("repeats")
         if writer.history.bytes > MAX_HISTORY:
             raise AssertionError(f"a history of {writer.history.bytes} octets")
-    if len(participant.outbox._bulk) > MAX_BULK:
-        raise AssertionError(f"{len(participant.outbox._bulk)} samples wait to be sent")
+    bulk = sum(len(flow.waiting) + len(flow.repairs) for flow in participant.outbox._flows)
+    if bulk > MAX_BULK:
+        raise AssertionError(f"{bulk} samples wait to be sent")
     held = 0
     for reader in [*participant.readers.values(), *participant.sedp.readers.values()]:
         if len(reader.proxies) > LIMITS.participants * LIMITS.endpoints:
@@ -93,9 +95,9 @@ def within(participant: Participant) -> None:
                 )
             if len(proxy.assemblies) > LIMITS.assemblies:
                 raise AssertionError("assemblies")
-            held += sum(one.size for one in proxy.assemblies.values())
-    if held != LIMITS.assembly_bytes - participant._budget.left or held > LIMITS.assembly_bytes:
-        raise AssertionError(f"assemblies of {held} octets, {participant._budget.left} left")
+            held += sum(cost(one.size, one.fragment_size) for one in proxy.assemblies.values())
+    if held != LIMITS.assembly_bytes - participant._common.assembling.left or held > LIMITS.assembly_bytes:
+        raise AssertionError(f"assemblies of {held} octets, {participant._common.assembling.left} left")
 
 
 def recorded(data: bytes) -> None:

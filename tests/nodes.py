@@ -56,6 +56,21 @@ def make(master: MasterServer) -> Iterator[Nodes]:
         node.close()
 
 
+def domain() -> int:
+    """A domain that others on this host hardly use: tests of several checkouts may run at a time."""
+    return 1 + os.getpid() % 100
+
+
+@pytest.fixture(params=["ros1", "ros2"])
+def network(request: pytest.FixtureRequest) -> Iterator[str]:
+    """The URL of either network, which does not leave this host: a master of the test's own, or a domain."""
+    if request.param == "ros1":
+        with MasterServer(port=0) as server:
+            yield f"ros1://127.0.0.1:{server.port}"
+    else:
+        yield f"ros2://{domain()}?range=localhost"
+
+
 def ros1(node: roslet.Node) -> Ros1Network:
     """What the node is on its network."""
     return node._ros1("a test")

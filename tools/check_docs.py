@@ -1,6 +1,7 @@
 """Runs the code blocks of README.md and docs/: `check_docs.py [FILE...]`.
 
-The blocks of a page run in order, in one empty folder, with a master of ours on a free port. What a block is, its info
+The blocks of a page run in order, in one empty folder, with a master of ours on a free port and a ROS 2 domain that does
+not leave this host. What a block is, its info
 string says:
 
     python             runs in a process of its own and must exit 0; a `text` block right after it is its standard output
@@ -201,6 +202,8 @@ class Page:
             self._environment = dict(
                 os.environ,
                 ROS_MASTER_URI=f"http://localhost:{self._port}",
+                ROS_DOMAIN_ID=str(1 + os.getpid() % 100),
+                ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST",
                 ROS_HOSTNAME="localhost",
                 PATH=os.path.dirname(sys.executable) + os.pathsep + os.environ.get("PATH", ""),
                 PYTHONUNBUFFERED="1",

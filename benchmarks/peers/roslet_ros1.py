@@ -1,4 +1,4 @@
-"""roslet on a ROS 1 network, for the side-by-side measurements of ROS stacks. The master is that of the other ROS 1 adapters."""
+"""roslet on a ROS 1 network, for the side-by-side measurements of ROS stacks; the master is the other ROS 1 adapters'."""
 
 import os
 import sys

@@ -17,8 +17,8 @@ from typing import Any
 import pytest
 
 from roslet.cli.demo import floor
-from roslet.cli.demo.programs import Programs, folder
-from roslet.cli.demo.show import HEIGHT, WIDTH, judge, png_size
+from roslet.cli.demo.programs import Programs, cyclone_python, folder
+from roslet.cli.demo.show import HEIGHT, ROS1, ROS2, WIDTH, judge, png_size
 
 Start = Callable[..., "subprocess.Popen[Any]"]
 
@@ -32,24 +32,33 @@ def png(width: int, height: int, rows: int) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", data) + chunk(b"IEND", b"")
 
 
-def figures(**changes: Any) -> dict[str, dict[str, Any]]:
-    """What four programs report when all is right, with some of it changed: talker_sent=9."""
-    right: dict[str, dict[str, Any]] = {
-        "talker": {
-            "sent": 10,
-            "returned": 10,
-            "altered": 0,
-            "round_trips": [0.001, 0.002, 0.003],
-            "final": True,
-        },
-        "listener": {"heard": 10, "wrong": 0, "final": True},
-        "camera": {"sent": 5, "final": True},
-        "viewer": {"received": 5, "wrong": 0, "final": True},
-    }
+def figures(**changes: Any) -> dict[str, dict[str, dict[str, Any]]]:
+    """What the programs report when all is right, with some of it changed: ros2_talker_sent=9."""
+
+    def pair() -> dict[str, dict[str, Any]]:
+        trips = [0.001, 0.002, 0.003]
+        return {
+            "talker": {
+                "sent": 10,
+                "returned": 10,
+                "altered": 0,
+                "round_trips": trips,
+                "found": 0.1,
+                "final": True,
+            },
+            "listener": {"heard": 10, "wrong": 0, "final": True},
+        }
+
+    pictures = {"camera": {"sent": 5, "final": True}, "viewer": {"received": 5, "wrong": 0, "final": True}}
+    cyclone = {"cyclone": {"heard": 10, "wrong": 0, "final": True}}
+    right: dict[str, dict[str, dict[str, Any]]] = {ROS1: {**pair(), **pictures}, ROS2: {**pair(), **cyclone}}
     for change, value in changes.items():
-        program, _, key = change.partition("_")
-        right[program][key] = value
+        network, program, key = change.split("_", 2)
+        right[{"ros1": ROS1, "ros2": ROS2}[network]][program][key] = value
     return right
+
+
+FLOORS = {ROS1: [0.001], ROS2: [0.001]}
 
 
 @pytest.fixture
@@ -60,35 +69,55 @@ def picture(tmp_path: pathlib.Path) -> pathlib.Path:
 
 
 def test_when_all_is_right_there_are_no_problems(picture: pathlib.Path) -> None:
-    result = judge(figures(), [0.001], picture)
+    result = judge(figures(), FLOORS, picture)
     assert result["problems"] == []
-    assert [row["right"] for row in result["topics"]] == [True, True, True]
-    assert result["round_trip"]["median"] == 0.002
+    assert [row["right"] for row in result["topics"]] == [True] * 6
+    assert [one["roslet"]["median"] for one in result["round_trips"]] == [0.002, 0.002]
+    assert (result["discovery"], result["cyclonedds"]) == (0.1, True)
 
 
 @pytest.mark.parametrize(
     "changes, topic",
     [
-        ({"listener_heard": 9}, "/ping"),
-        ({"listener_wrong": 1}, "/ping"),
-        ({"talker_returned": 9}, "/pong"),
-        ({"talker_altered": 1}, "/pong"),
-        ({"viewer_received": 4}, "/image"),
-        ({"viewer_wrong": 1}, "/image"),
-        ({"camera_sent": 0, "viewer_received": 0}, "/image"),
-        ({"talker_round_trips": []}, "no round trip"),
+        ({"ros1_listener_heard": 9}, "ROS 1 /ping"),
+        ({"ros1_listener_wrong": 1}, "ROS 1 /ping"),
+        ({"ros1_talker_returned": 9}, "ROS 1 /pong"),
+        ({"ros1_talker_altered": 1}, "ROS 1 /pong"),
+        ({"ros1_viewer_received": 4}, "ROS 1 /image"),
+        ({"ros1_viewer_wrong": 1}, "ROS 1 /image"),
+        ({"ros1_camera_sent": 0, "ros1_viewer_received": 0}, "ROS 1 /image"),
+        ({"ros1_talker_round_trips": []}, "ROS 1: no round trip"),
+        ({"ros2_listener_heard": 9}, "ROS 2 /ping"),
+        ({"ros2_talker_returned": 9}, "ROS 2 /pong"),
+        ({"ros2_cyclone_heard": 9}, "ROS 2 /ping at CycloneDDS"),
+        ({"ros2_cyclone_wrong": 1}, "ROS 2 /ping at CycloneDDS"),
+        ({"ros2_talker_round_trips": []}, "ROS 2: no round trip"),
     ],
 )
 def test_whatever_is_lost_or_altered_or_missing_is_a_problem(
     changes: dict[str, Any], topic: str, picture: pathlib.Path
 ) -> None:
-    problems = judge(figures(**changes), [0.001], picture)["problems"]
+    problems = judge(figures(**changes), FLOORS, picture)["problems"]
     assert any(problem.startswith(topic) for problem in problems)
 
 
+def test_a_program_that_never_reported_is_a_problem(picture: pathlib.Path) -> None:
+    silent = figures()
+    silent[ROS2]["talker"] = {}
+    del silent[ROS2]["cyclone"]
+    result = judge(silent, {ROS1: [0.001], ROS2: []}, picture)
+    assert not result["cyclonedds"]
+    assert result["problems"] == [
+        "ROS 2 /ping: sent None, received 10, wrong 0",
+        "ROS 2 /pong: sent 10, received None, wrong None",
+        "ROS 2: no round trip was timed",
+        "ROS 2: no round trip of raw sockets was timed",
+    ]
+
+
 def test_programs_that_said_nothing_are_problems(tmp_path: pathlib.Path) -> None:
-    nothing: dict[str, dict[str, Any]] = {name: {} for name in ("talker", "listener", "camera", "viewer")}
-    assert len(judge(nothing, [], tmp_path / "none.png")["problems"]) == 6
+    problems = judge({ROS1: {}, ROS2: {}}, {ROS1: [], ROS2: []}, tmp_path / "none.png")["problems"]
+    assert len(problems) == 2 * 4 + 2, "each network: two topics, two timings; the images, the picture"
 
 
 @pytest.mark.parametrize(
@@ -107,9 +136,10 @@ def test_a_picture_that_is_none_is_told(data: bytes, complaint: str) -> None:
 
 
 def test_the_floor_is_timed_with_a_process_of_its_own() -> None:
-    trips = floor.measure(0.2, 100.0)
-    assert 1 <= len(trips) <= 21
-    assert all(trip > 0 for trip in trips)
+    for measure in (floor.measure, floor.measure_datagrams):
+        trips = measure(0.2, 100.0)
+        assert 1 <= len(trips) <= 21
+        assert all(trip > 0 for trip in trips)
 
 
 def test_the_whole_demo_works_and_leaves_nothing_behind(start: Start, tmp_path: pathlib.Path) -> None:
@@ -117,9 +147,13 @@ def test_the_whole_demo_works_and_leaves_nothing_behind(start: Start, tmp_path: 
     out, err = process.communicate(timeout=40)
     result = json.loads(out)
     assert (process.returncode, err, result["problems"]) == (0, "", [])
-    assert [(row["topic"], row["sent"], row["received"]) for row in result["topics"]] == [
-        ("/ping", 50, 50), ("/pong", 50, 50), ("/image", 10, 10),
-    ]  # fmt: skip
+    rows = {(row["network"], row["topic"]): (row["sent"], row["received"]) for row in result["topics"]}
+    assert rows.pop((ROS1, "/image")) == (10, 10)
+    assert set(rows.values()) == {(50, 50)}
+    pairs = {(network, topic) for network in (ROS1, ROS2) for topic in ("/ping", "/pong")}
+    cyclone = {(ROS2, "/ping at CycloneDDS")} if cyclone_python() else set()
+    assert set(rows) == pairs | cyclone
+    assert 0 < result["discovery"] < 5
     assert png_size(pathlib.Path(result["picture"]).read_bytes()) == (WIDTH, HEIGHT)
     assert children(process.pid) == []
 

@@ -11,16 +11,19 @@ from typing import Any
 import pytest
 
 from roslet.cli.main import COMMANDS, build
+from roslet.cli.options import default_network
 
 Run = Callable[..., Any]
 
 LEAVES = [
-    "topic list", "topic echo", "topic pub", "topic hz", "topic bw", "topic info", "topic type",
+    "topic list", "topic echo", "topic pub", "topic hz", "topic bw", "topic delay", "topic info", "topic type", "topic find",
     "node list", "node info", "node ping", "node kill",
-    "service list", "service call", "service type", "service info",
-    "param list", "param get", "param set", "param delete", "param dump", "param load",
+    "service list", "service call", "service type", "service info", "service find",
+    "action list", "action info", "action send_goal",
+    "param list", "param get", "param set", "param delete", "param describe", "param dump",
+    "param load",
     "interface show", "interface hash", "interface size", "interface list",
-    "gen python", "master", "run", "bench", "demo",
+    "gen python", "master", "doctor", "run", "bench", "demo",
 ]  # fmt: skip
 
 
@@ -86,13 +89,52 @@ def test_without_a_master_every_graph_command_says_so_with_exit_code_3(command: 
 def test_a_network_that_is_none_is_one_line(run: Run) -> None:
     outcome = run("topic", "list", "--network", "http://localhost")
     assert outcome.code == 1
-    assert outcome.err == "roslet: 'http://localhost' is no network; write ros1://host:port\n"
+    assert outcome.err == (
+        "roslet: 'http://localhost' is no network; write ros2://DOMAIN or ros1://host:port\n"
+    )
 
 
-def test_the_ros2_network_says_that_it_is_not_there(run: Run) -> None:
-    outcome = run("topic", "list", "--network", "ros2://")
+@pytest.mark.parametrize(
+    "variables, network",
+    [
+        ({}, "ros2://"),
+        ({"ROS_MASTER_URI": "http://robot:11311"}, "ros1://"),
+        ({"ROS_MASTER_URI": ""}, "ros2://"),
+        ({"ROSLET_NETWORK": "ros2://7", "ROS_MASTER_URI": "http://robot:11311"}, "ros2://7"),
+        ({"ROSLET_NETWORK": "ros1://robot"}, "ros1://robot"),
+    ],
+)
+def test_the_environment_decides_on_the_network_of_a_command_that_is_told_none(
+    variables: dict[str, str], network: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("ROSLET_NETWORK", "ROS_MASTER_URI"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    assert default_network() == network
+    assert build("topic").parse_args(["topic", "list"]).network == network
+    assert build("topic").parse_args(["topic", "list", "--network", "ros2://3"]).network == "ros2://3"
+
+
+@pytest.mark.parametrize("command", ["node ping /a", "node kill /a"])
+def test_what_ros_2_lacks_is_one_line(command: str, run: Run) -> None:
+    outcome = run(*command.split(), "--network", "ros2://")
     assert outcome.code == 1
-    assert "the ROS 2 network is not there yet" in outcome.err
+    assert outcome.err == f"roslet: {' '.join(command.split()[:2])}: the ROS 2 network has no such call\n"
+
+
+@pytest.mark.parametrize("command", ["action list", "action info /a", "action send_goal /a"])
+def test_what_ros_1_lacks_is_one_line(command: str, run: Run) -> None:
+    outcome = run(*command.split(), "--network", "ros1://")
+    assert outcome.code == 1
+    assert outcome.err == f"roslet: {' '.join(command.split()[:2])}: the ROS 1 network has no such thing\n"
+
+
+@pytest.mark.parametrize("words", ["depth", "depth=x", "depth=0", "reliability=perfect", "speed=5"])
+def test_a_wrong_quality_of_service_is_wrong_usage(words: str, run: Run) -> None:
+    outcome = run("topic", "pub", "/a", "std_msgs/Empty", "--qos", words)
+    assert outcome.code == 2
+    assert outcome.err.startswith("roslet: --qos: ")
 
 
 def test_a_file_that_is_not_there_is_named(run: Run, master: Any) -> None:

@@ -1,12 +1,15 @@
-"""Every example program runs, alone with --help and with its partner against a master of ours."""
+"""Every example program runs: alone with --help, and with its partner on both networks."""
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pathlib
+import signal
 import struct
 import subprocess
 import sys
+import time
 import zlib
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -14,7 +17,9 @@ from typing import Any
 import pytest
 
 import peers
-from roslet.master.server import MasterServer
+from nodes import domain, network
+
+__all__ = ["network"]
 
 FOLDER = peers.ROOT / "examples"
 PROGRAMS = sorted(path.name for path in FOLDER.glob("*.py"))
@@ -22,35 +27,41 @@ PROGRAMS = sorted(path.name for path in FOLDER.glob("*.py"))
 Start = Callable[..., "subprocess.Popen[str]"]
 
 
-@pytest.fixture
-def start() -> Iterator[Start]:
-    """Start an example on a master of its own; it ends with the test."""
+@contextlib.contextmanager
+def starting(network: str) -> Iterator[Start]:
     processes: list[subprocess.Popen[str]] = []
-    with MasterServer("127.0.0.1", 0) as master:
 
-        def begin(name: str, *arguments: object) -> subprocess.Popen[str]:
-            process = subprocess.Popen(
-                [
-                    sys.executable,
-                    str(FOLDER / name),
-                    "--network",
-                    f"ros1://127.0.0.1:{master.port}",
-                    *map(str, arguments),
-                ],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                text=True,
-                env={**os.environ, "PYTHONPATH": str(peers.ROOT / "src")},
-            )
-            processes.append(process)
-            return process
+    def begin(name: str, *arguments: object) -> subprocess.Popen[str]:
+        process = subprocess.Popen(
+            [sys.executable, str(FOLDER / name), "--network", network, *map(str, arguments)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "PYTHONPATH": str(peers.ROOT / "src")},
+        )
+        processes.append(process)
+        return process
 
+    yield begin
+    for process in processes:
+        if process.poll() is None:
+            process.kill()
+        process.communicate()
+
+
+@pytest.fixture
+def start(network: str) -> Iterator[Start]:
+    """Start an example on a network of the test's own; it ends with the test."""
+    with starting(network) as begin:
         yield begin
-        for process in processes:
-            if process.poll() is None:
-                process.kill()
-            process.communicate()
+
+
+@pytest.fixture
+def start_ros2() -> Iterator[Start]:
+    """The same for what there is on ROS 2 only."""
+    with starting(f"ros2://{domain()}?range=localhost") as begin:
+        yield begin
 
 
 def finish(process: subprocess.Popen[str]) -> list[str]:
@@ -172,3 +183,66 @@ def test_a_viewer_that_got_nothing_fails(start: Start, tmp_path: pathlib.Path) -
     viewer.communicate(timeout=20)
     assert viewer.returncode == 1
     assert not (tmp_path / "image.png").exists()
+
+
+def test_a_service_is_called_in_one_process_and_in_two(start: Start) -> None:
+    assert finish(start("service.py")) == ["2 + 3", "2 + 4", "2 + 5", "sums 5 6 7"]
+    server = start("service.py", "server")
+    assert finish(start("service.py", "client", 40, 2)) == ["sums 42 43 44"]
+    assert interrupt(server) == ["40 + 2", "40 + 3", "40 + 4"]
+
+
+def interrupt(process: subprocess.Popen[str]) -> list[str]:
+    """What it printed until a Ctrl-C, after which it ends quietly."""
+    process.send_signal(signal.SIGINT)
+    return finish(process)
+
+
+def test_an_asyncio_program_hears_and_asks(start: Start) -> None:
+    said = finish(start("asyncio_node.py", "--count", 3))
+    assert sorted(said) == [
+        *(f"I heard: Hello asyncio {number}" for number in (1, 2, 3)),
+        "the switch says: on",
+    ]
+
+
+def test_an_action_gives_feedback_a_result_and_can_be_canceled(start_ros2: Start) -> None:
+    server = start_ros2("action.py", "server", "--pause", 0.05)
+    assert finish(start_ros2("action.py", "client", "--order", 5)) == [
+        *(f"so far {number}" for number in (1, 2, 3, 5, 8)),
+        "SUCCEEDED 0 1 1 2 3 5 8",
+    ]
+    said = finish(start_ros2("action.py", "client", "--order", 40, "--cancel-after", 2))
+    assert said[:2] == ["so far 1", "so far 2"]
+    assert said[-1].startswith("CANCELED 0 1 1 2") and len(said) < 12
+    interrupt(server)
+
+
+def test_a_parameter_changes_what_a_program_does(start: Start, network: str) -> None:
+    heart = start("parameters.py", "--count", 30)
+    assert heart.stdout is not None and heart.stdout.readline() == "2 beats a second\n"
+    command = [sys.executable, "-m", "roslet", "param", "set"]
+    name = ["/heart/hz"] if network.startswith("ros1") else ["/heart", "hz"]
+    env = {**os.environ, "PYTHONPATH": str(peers.ROOT / "src")}
+    begin = time.monotonic()
+    done = subprocess.run(
+        [*command, *name, "50.0", "--network", network],
+        env=env,
+        capture_output=True,
+        text=True,
+        timeout=30,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert finish(heart) == ["50 beats a second", "30 beats"]
+    assert time.monotonic() - begin < 14, "thirty beats at the old rate take 15 s"
+
+
+def test_the_events_of_qos_are_told(start_ros2: Start) -> None:
+    assert finish(start_ros2("qos_events.py")) == [
+        "no messages from /offers: reliability",
+        "matched with /offers",
+        "one",
+        "the deadline was missed",
+        "came late and got map 2 map 3",
+    ]

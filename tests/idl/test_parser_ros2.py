@@ -22,6 +22,37 @@ def only_field(text: str) -> Field:
 
 
 @pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("time t", "Time"),
+        ("duration t", "Duration"),
+        ("time[] t", "Time"),
+        ("time[3] t", "Time"),
+        ("duration[<=3] t", "Duration"),
+    ],
+)
+def test_the_times_of_ros_1_are_those_of_builtin_interfaces(text: str, name: str) -> None:
+    theirs = only_field("builtin_interfaces/" + name + text.split()[0].removeprefix(name.lower()) + " t")
+    ours = only_field(text)
+    assert ours.type.message == TypeName("builtin_interfaces", "msg", name) == theirs.type.message
+    assert (ours.type.primitive, ours.type.array) == (None, theirs.type.array)
+
+
+def test_a_constant_is_no_time() -> None:
+    with pytest.raises(DefinitionError, match="a constant is a number, a bool or a string, not of type time"):
+        message("time T=1")
+
+
+def test_a_bare_header_is_that_of_std_msgs_where_the_package_has_none() -> None:
+    own, standard = TypeName("pkg", "msg", "Header"), TypeName("std_msgs", "msg", "Header")
+    assert only_field("Header header").type.message == own
+    for text, expected in (("Header header", standard), ("Header[] header", own), ("other/Header h", None)):
+        parsed = parse(text, NAME, "ros2", own_header=False)
+        assert isinstance(parsed, Message)
+        assert parsed.fields[0].type.message == (expected or TypeName("other", "msg", "Header"))
+
+
+@pytest.mark.parametrize(
     ("spelled", "primitive"),
     [
         ("bool", "bool"),
@@ -146,8 +177,6 @@ def test_a_constant_has_a_value_and_keeps_its_text(line: str, value: object, tex
         ("int32 x=1", 1, 7, "x is no constant name: constant names are made of capitals"),
         ("int32 A__B=1", 1, 7, "A__B is no constant name"),
         ("int32 x 1\n\nint32 x", 3, 7, "x is defined twice, first in line 1"),
-        ("time t", 1, 1, "ROS 2 has no type time: use builtin_interfaces/Time"),
-        ("a/B x\nduration[] t", 2, 1, "ROS 2 has no type duration: use builtin_interfaces/Duration"),
         ("string<=0 x", 1, 9, "a size is at least 1 and at most 4294967295"),
         ("string<5 x", 1, 7, "a bound is written string<=N"),
         ("string<= x", 1, 9, "expected a size in decimal digits, not "),

@@ -125,7 +125,9 @@ class Namespace:
         self.programs.append(program)
         return program
 
-    def popen(self, command: list[str], stdin: int, stdout: int, stderr: IO[bytes], **environment: str) -> Any:
+    def popen(
+        self, command: list[str], stdin: int, stdout: int, stderr: IO[bytes], **environment: str
+    ) -> Any:
         """A program whose input and output are the caller's."""
         program = Piped([*self._enter(), *command], stdin, stdout, stderr, self.environment(**environment))
         self.programs.append(program)

@@ -45,7 +45,9 @@ def name() -> str:
     return f"/name_{next(_numbers)}"
 
 
-def connect(pair: Pair, topic: str, type_name: str, offered: Any = None, requested: Any = None, size: int = 0) -> None:
+def connect(
+    pair: Pair, topic: str, type_name: str, offered: Any = None, requested: Any = None, size: int = 0
+) -> None:
     """Publisher and subscription of a topic, under its name, each of which counts the other."""
     pair.listener.ask("subscription", topic, topic, type_name, size, requested or {})
     pair.talker.ask("publisher", topic, topic, type_name, offered or {})
@@ -134,7 +136,12 @@ def compatible(pair: Pair, offered: dict[str, Any], requested: dict[str, Any]) -
         assert heard[0] >= 5
     if requested["reliability"] == "reliable":
         assert [one for one in heard if one >= 5] == list(range(5, 25))
-    assert not [one for end in (pair.talker, pair.listener) for one in end.ask("events", topic) if one[0] == "incompatible"]
+    assert not [
+        one
+        for end in (pair.talker, pair.listener)
+        for one in end.ask("events", topic)
+        if one[0] == "incompatible"
+    ]
     disconnect(pair, topic)
 
 

@@ -28,7 +28,9 @@ def test_every_message_arrives_whole_and_in_order(pair: Pair, case: exchange.Cas
 @pytest.mark.parametrize(
     ("offered", "requested"), exchange.COMPATIBLE, ids=[exchange.spell(*one) for one in exchange.COMPATIBLE]
 )
-def test_what_is_offered_is_enough_for(pair: Pair, offered: dict[str, Any], requested: dict[str, Any]) -> None:
+def test_what_is_offered_is_enough_for(
+    pair: Pair, offered: dict[str, Any], requested: dict[str, Any]
+) -> None:
     exchange.compatible(pair, offered, requested)
 
 
@@ -84,8 +86,8 @@ def test_instances_of_a_keyed_topic_come_and_go(pair: Pair) -> None:
     wait_until(lambda: len(pair.listener.ask("heard_keyed", topic)) == 9, "all samples and states")
     heard = pair.listener.ask("heard_keyed", topic)
     samples = [bytes.fromhex(one[1]) for one in heard if one[0] == "sample"]
-    assert [one[:2] + b"\0\0" + one[4 : 4 + len(body)] for one, body in zip(samples, expected, strict=True)] == [
-        front + body for body in expected
-    ]
+    assert [
+        one[:2] + b"\0\0" + one[4 : 4 + len(body)] for one, body in zip(samples, expected, strict=True)
+    ] == [front + body for body in expected]
     # Alive twice, disposed twice: a writer that unregisters disposes, unless told otherwise.
     assert [one[1:] for one in heard if one[0] == "instance"] == [[1, "a"], [1, "bcd"], [2, "a"], [2, "bcd"]]

@@ -40,7 +40,9 @@ class Story:
         end = time.monotonic() + 15
         for peer in survivors:
             while peer.ask("last", "from") != [pid]:
-                assert time.monotonic() < end, f"{peer.kind} does not hear the {kind} that has returned: {mortal.log()}"
+                assert time.monotonic() < end, (
+                    f"{peer.kind} does not hear the {kind} that has returned: {mortal.log()}"
+                )
                 peer.ask("publish", "to", 0, 1, 0, 0.01)
         mortal.ask("kill", pid)
 
@@ -77,9 +79,7 @@ def test_when_the_leases_are_over_nothing_is_left_of_the_dead(story: Story) -> N
 
     wait_until(lambda: not any(left().values()), "our tables are as they were", LEASE + 10)
     for peer in story.survivors:
-        wait_until(
-            lambda peer=peer: peer.ask("nodes") == ["/survivor", "/witness"], f"{peer.kind} forgets", LEASE + 10  # type: ignore[misc]
-        )
+        peer.wait(["/survivor", "/witness"], "nodes", patience=LEASE + 10)
     now = story.ours.ask("process")
     assert now["descriptors"] == story.process["descriptors"]
     assert now["memory"] < story.process["memory"] + ROOM

@@ -25,7 +25,9 @@ def test_every_message_arrives_whole_and_in_order(pair: Pair, case: exchange.Cas
 @pytest.mark.parametrize(
     ("offered", "requested"), exchange.COMPATIBLE, ids=[exchange.spell(*one) for one in exchange.COMPATIBLE]
 )
-def test_what_is_offered_is_enough_for(pair: Pair, offered: dict[str, Any], requested: dict[str, Any]) -> None:
+def test_what_is_offered_is_enough_for(
+    pair: Pair, offered: dict[str, Any], requested: dict[str, Any]
+) -> None:
     exchange.compatible(pair, offered, requested)
 
 

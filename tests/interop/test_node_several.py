@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from interop import ros2_exchange as exchange
-from interop.ros2_peers import Host, Peer
+from interop.ros2_peers import Host, Peer, wait_until
 
 KINDS = ("roslet", "kilted", "jazzy", "cyclone")
 
@@ -38,7 +38,7 @@ def test_everybody_hears_everybody_on_one_topic_each_in_order(everybody: dict[st
             heard: list[int] = peer.ask("heard", "in")[0]
             return [one for k in range(len(KINDS)) for one in heard if one // 1000 == k]
 
-        exchange.wait_until(lambda: len(sorted_by_talker()) >= len(everything), f"{kind} hears all")  # noqa: B023
+        wait_until(lambda: len(sorted_by_talker()) >= len(everything), f"{kind} hears all")
         assert sorted_by_talker() == everything, kind
 
 
@@ -48,7 +48,9 @@ def test_one_server_answers_several_clients_each_its_own(everybody: dict[str, Pe
     kind = "sensor_msgs/srv/SetCameraInfo"
     # The dialect of Cyclone is not that of Fast DDS: between those two nobody is served.
     clients = [
-        everybody[one] for one in (KINDS if server == "roslet" else ("roslet", "kilted", "jazzy")) if one != server
+        everybody[one]
+        for one in (KINDS if server == "roslet" else ("roslet", "kilted", "jazzy"))
+        if one != server
     ]
     everybody[server].ask("service", service, service, kind)
     for peer in clients:

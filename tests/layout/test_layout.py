@@ -123,7 +123,7 @@ def test_a_ros1_time_is_two_integers_and_a_struct() -> None:
         ("string<=3 s\nfloat64 a\n", 16, 16),
         ("string<=4 s\nfloat64 a\n", 16, 24),
         ("string s\n", 5, None),
-        ("wstring<=3 s\n", 4, 10),
+        ("wstring<=3 s\n", 4, 16),
         ("float64[<=2] a\nuint8 b\n", 5, 25),
         ("string<=2[<=3] s\nuint8 b\n", 5, 4 + 7 + 1 + 7 + 1 + 7 + 1),
         ("geometry_msgs/Point[3] p\n", 72, 72),

@@ -435,3 +435,12 @@ def test_raw_peer_sees_nothing_but_its_topic(make: Nodes) -> None:
         one.publish(data="yes")
         assert raw.read_frame() == b"\x03\0\0\0yes"
     assert isinstance(raw, Raw)
+
+
+def test_what_only_ros_2_has_is_unsupported_and_says_so(make: Nodes) -> None:
+    node = make("node")
+    for endpoint in (node.publisher("t", "std_msgs/String"), node.subscribe("t", "std_msgs/String")):
+        with pytest.raises(roslet.Unsupported, match="on_event: the ROS 1 network"):
+            endpoint.on_event(print)
+        with pytest.raises(roslet.Unsupported, match="gid: the ROS 1 network"):
+            _ = endpoint.gid

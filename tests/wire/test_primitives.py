@@ -47,8 +47,10 @@ def test_text_is_kept_byte_for_byte() -> None:
         assert primitives.decode(primitives.encode(text)) == text
         for big in (True, False):
             assert primitives.decode_wide(primitives.encode_wide(text, big), big) == text
-    assert primitives.encode_wide("aä\U0001f916", True) == b"\x00a\x00\xe4\xd8\x3e\xdd\x16"
-    assert primitives.encode_wide("a", False) == b"a\0"
+    assert primitives.encode_wide("aä\U0001f916", True) == (b"\0\0\x00a\0\0\x00\xe4\0\0\xd8\x3e\0\0\xdd\x16")
+    assert primitives.encode_wide("a", False) == b"a\0\0\0"
+    with pytest.raises(ValueError):
+        primitives.decode_wide(b"\xff\xff\xff\xff", False)
 
 
 def test_bytes_that_are_no_utf8_are_still_text() -> None:

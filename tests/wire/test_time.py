@@ -70,3 +70,12 @@ def test_zero_is_false_and_prints_its_parts() -> None:
     assert Time().is_zero()
     assert repr(Time(1, 2)) == "Time(secs=1, nsecs=2)"
     assert str(Duration(1, 2)) == "1000000002"
+
+
+def test_both_parts_have_their_names_of_ros_2_too() -> None:
+    stamp = Time(3, 4)
+    assert (stamp.sec, stamp.nanosec) == (3, 4)
+    stamp.sec, stamp.nanosec = 5, 6
+    assert (stamp.secs, stamp.nsecs) == (5, 6)
+    span = Duration(-0.5)
+    assert (span.sec, span.nanosec) == (-1, 500000000)

@@ -66,10 +66,10 @@ def run_list(arguments: argparse.Namespace) -> int:
     """`roslet node list`."""
     namespace = full_name(arguments.namespace).rstrip("/") + "/"
     with open_graph(arguments.network) as graph:
+        parts = (graph.publishers, graph.subscribers, graph.services)
         rows = []
         for node in graph.nodes():
             if node.startswith(namespace) and (arguments.all or not graph.hidden(node)):
-                parts = (graph.publishers, graph.subscribers, graph.services)
                 rows.append((node, *(sum(node in nodes for nodes in part.values()) for part in parts)))
     if arguments.json:
         keys = ("node", "publishes", "subscribes", "services")

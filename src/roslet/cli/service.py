@@ -94,14 +94,15 @@ def run_list(arguments: argparse.Namespace) -> int:
     """`roslet service list`."""
     namespace = full_name(arguments.namespace).rstrip("/") + "/"
     with open_graph(arguments.network) as graph:
+        services = graph.services
         names = [
             name
-            for name in sorted(graph.services)
+            for name in sorted(services)
             if name.startswith(namespace) and (arguments.all or not graph.hidden(name))
         ]
         rows: list[dict[str, Any]] = []
         for name in names:
-            row: dict[str, Any] = {"service": name, "nodes": graph.services[name]}
+            row: dict[str, Any] = {"service": name, "nodes": services[name]}
             if arguments.types_too:
                 try:
                     row["type"] = graph.service_type(name)

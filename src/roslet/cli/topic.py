@@ -198,34 +198,35 @@ def run_list(arguments: argparse.Namespace) -> int:
         if arguments.names:
             for topic in topics:
                 print(topic)
-        elif arguments.json:
-            emit_json([describe(graph, topic) for topic in topics])
         else:
-            table(
-                ("TOPIC", "TYPE", "PUBLISHERS", "SUBSCRIBERS"),
-                [
-                    (
-                        topic,
-                        graph.types.get(topic, "*"),
-                        len(graph.publishers.get(topic, ())),
-                        len(graph.subscribers.get(topic, ())),
-                    )
-                    for topic in topics
-                ],
-            )
+            rows = describe(graph, topics)
+            if arguments.json:
+                emit_json(rows)
+            else:
+                table(
+                    ("TOPIC", "TYPE", "PUBLISHERS", "SUBSCRIBERS"),
+                    [
+                        (row["topic"], row["type"], len(row["publishers"]), len(row["subscribers"]))
+                        for row in rows
+                    ],
+                )
     if not topics and not arguments.json:
         note("no topics" if namespace == "/" else f"no topics below {namespace}")
     return 0
 
 
-def describe(graph: Graph, topic: str) -> dict[str, Any]:
-    """A topic as JSON data."""
-    return {
-        "topic": topic,
-        "type": graph.types.get(topic, "*"),
-        "publishers": graph.publishers.get(topic, []),
-        "subscribers": graph.subscribers.get(topic, []),
-    }
+def describe(graph: Graph, topics: list[str]) -> list[dict[str, Any]]:
+    """Topics as JSON data."""
+    types, publishers, subscribers = graph.types, graph.publishers, graph.subscribers
+    return [
+        {
+            "topic": topic,
+            "type": types.get(topic, "*"),
+            "publishers": publishers.get(topic, []),
+            "subscribers": subscribers.get(topic, []),
+        }
+        for topic in topics
+    ]
 
 
 def _known(graph: Graph, name: str) -> str:
@@ -288,10 +289,11 @@ def run_find(arguments: argparse.Namespace) -> int:
 
     wanted = _bare(arguments.type)
     with open_graph(arguments.network) as graph:
+        types = graph.types
         found = [
             topic
             for topic in graph.topics()
-            if wanted in [_bare(kind) for kind in graph.types.get(topic, "*").split(", ")]
+            if wanted in [_bare(kind) for kind in types.get(topic, "*").split(", ")]
             and (arguments.all or not graph.hidden(topic))
         ]
     if arguments.json:

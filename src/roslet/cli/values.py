@@ -30,8 +30,10 @@ def read_value(text: str) -> Any:
     """The value of one command-line argument. Raises CommandError for text that looks like a structure but is none."""
     yaml = yaml_module()
     if yaml is not None:
+        from roslet.node.values import load_yaml
+
         try:
-            value = _load_yaml(yaml, text)
+            value = load_yaml(yaml, text)
         except ValueError as error:
             raise CommandError(f"not YAML: {text!r}: {error}", USAGE) from None
         return "" if value is None and not text.strip() else value
@@ -50,8 +52,10 @@ def read_document(text: str, name: str) -> Any:
     """The value that a file holds. Raises CommandError, which names the file."""
     yaml = yaml_module()
     if yaml is not None:
+        from roslet.node.values import load_yaml
+
         try:
-            return _load_yaml(yaml, text)
+            return load_yaml(yaml, text)
         except ValueError as error:
             raise CommandError(f"{name}: {error}") from None
     import json
@@ -62,22 +66,6 @@ def read_document(text: str, name: str) -> Any:
         raise CommandError(f"{name}: nested too deeply") from None
     except ValueError as error:
         raise CommandError(f"{name}: {error}; a YAML file needs PyYAML: pip install 'roslet[cli]'") from None
-
-
-def _load_yaml(yaml: ModuleType, text: str) -> Any:
-    """The value of a YAML text. Raises ValueError that says where and what is wrong."""
-    try:
-        return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        problem = getattr(error, "problem", None) or str(error)
-        place = "" if mark is None else f"line {mark.line + 1}, column {mark.column + 1}: "
-        raise ValueError(f"{place}{problem}") from None
-    except RecursionError:
-        raise ValueError("nested too deeply") from None
-    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-        # PyYAML lets these out where a tag does not fit its value (`!!int x`), or a date is none (2020-13-45).
-        raise ValueError(f"{type(error).__name__}: {error}") from None
 
 
 def build(kind: type[Message], arguments: Sequence[str], now: Callable[[], Any]) -> Message:

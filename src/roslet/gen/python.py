@@ -161,6 +161,12 @@ def fields_and_types(message: Message) -> tuple[tuple[str, str], ...]:
     return tuple(rows)
 
 
+def base(message: Message) -> str:
+    """The class of roslet.wire.message that a message's class is made from."""
+    stamp = message.dialect == "ros2" and message.name.package == "builtin_interfaces"
+    return "Stamp" if stamp and message.name.name in ("Time", "Duration") else "Message"
+
+
 def has_header(message: Message) -> bool:
     """Whether a ROS 1 message begins with a std_msgs/Header named header."""
     first = message.fields[0] if message.fields else None

@@ -137,11 +137,12 @@ def _message_module(registry: Registry, message: Message) -> str:
     lines = [
         MARK % message.name.text(dialect),
         "",
-        *_imports(message.name, references, [*reader.block, *body], globals_),
+        *_imports(message, references, [*reader.block, *body], globals_),
         "",
     ]
     lines += ["%s = %s" % item for item in sorted(globals_.items())]
-    return render([*lines, "", "", *reader.block, "", "", "class %s(Message):" % message.name.name, body])
+    head = "class %s(%s):" % (message.name.name, python.base(message))
+    return render([*lines, "", "", *reader.block, "", "", head, body])
 
 
 def _facts(registry: Registry, message: Message, laid_out: Any) -> Iterator[str | Block]:
@@ -167,7 +168,7 @@ def _facts(registry: Registry, message: Message, laid_out: Any) -> Iterator[str 
 
 
 def _imports(
-    name: TypeName, references: dict[str, Any], body: list[str | Block], globals_: dict[str, str]
+    message: Message, references: dict[str, Any], body: list[str | Block], globals_: dict[str, str]
 ) -> Iterator[str]:
     text = render(body) + "\n".join(globals_.values())
     arrays = [
@@ -179,7 +180,7 @@ def _imports(
     whole = ["deserialize_any as _deserialize"]
     if "_serialize(self)" in text:
         whole.append("serialize_any as _serialize")
-    yield "from roslet.wire.message import " + ", ".join(["Message", *whole, *rescue])
+    yield "from roslet.wire.message import " + ", ".join([python.base(message), *whole, *rescue])
     used = [
         "%s as %s" % (there, here)
         for here, there in sorted(python.PRELUDE.items())
@@ -192,7 +193,7 @@ def _imports(
         yield "from roslet.wire.time import " + ", ".join(["%s as _%s" % (kind, kind) for kind in times])
     for reference, target in sorted(references.items()):
         if not isinstance(target, str):
-            yield "from %s import %s as %s" % (_module(name, target), target.name, reference)
+            yield "from %s import %s as %s" % (_module(message.name, target), target.name, reference)
     if "_ndarray" in text:
         yield ""
         yield '_ndarray = _numbers("uint8").type'

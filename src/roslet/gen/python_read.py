@@ -203,7 +203,7 @@ class Deserializer(Codec):
     def wide(self, text: Text, holders: dict[Path, str]) -> Iterator[str | Block]:
         yield from self.bounded(text.bound)
         yield from self.settle()
-        yield "e = o + n * 2"
+        yield "e = o + n * 4"
         yield self.store(text.path, holders, "_decode_wide(buffer[o:e], False)")
         self.variable, self.constant = "e", 0
 

@@ -7,6 +7,7 @@ from roslet.gen.python_names import attribute
 from roslet.layout import PRIMITIVE_SIZE, Numbers, Octets, Run, Sequence, Text
 from roslet.wire.arrays import TYPECODES
 from roslet.wire.message import GATHER_MINIMUM
+from roslet.wire.primitives import MAX_TABLE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -252,10 +253,32 @@ class Serializer(Codec):
                 self.numbers(slot.primitive, "tag"),
             )
             yield ["%s = %s.tobytes()" % (name, name)]
+            count = slot.size // PRIMITIVE_SIZE[slot.primitive]
+            if slot.primitive in ("float32", "float64") and count < MAX_TABLE:
+                # What a program writes down by hand; integers would need a look at their range on MicroPython.
+                pack = self.need(
+                    "_%s_pack%d" % (slot.primitive, count),
+                    '_numbers("%s").packers[%d]' % (slot.primitive, count),
+                )
+                yield "elif type(%s) is list:" % name
+                yield ["%s = %s(*%s)" % (name, pack, name)]
+            yield self.is_array(name, slot.primitive)
+            yield ["%s = %s.tobytes()" % (name, name)]
             yield "else:"
             yield ["%s = bytes(%s(%s))" % (name, raw, name)]
         yield "if len(%s) != %d:" % (name, slot.size)
         yield ["raise ValueError"]
+
+    def is_array(self, name: str, primitive: str, more: str = "") -> str:
+        """Whether the array of the standard library has just these bytes."""
+        kind = self.numbers(primitive, "array")
+        return 'elif type(%s) is %s and %s.typecode == "%s"%s:' % (
+            name,
+            kind,
+            name,
+            TYPECODES[primitive],
+            more,
+        )
 
     def prepare(
         self, operation: Operation | None, holders: dict[Path, str]
@@ -280,7 +303,7 @@ class Serializer(Codec):
         count = n
         if isinstance(operation, Text) and operation.wide:
             yield "%s = _encode_wide(%s, False)" % (data, value)
-            unit = 2
+            unit = 4
         elif isinstance(operation, Text):
             yield "%s = %s.encode()" % (data, value)
             count = n + " + 1" if operation.terminator else n
@@ -294,6 +317,9 @@ class Serializer(Codec):
             yield "%s = %s" % (data, value)
             small = "%s.nbytes < %d" % (data, GATHER_MINIMUM)
             yield "if type(%s) is _ndarray and %s.dtype is %s and %s:" % (data, data, tag, small)
+            yield ["%s = %s.tobytes()" % (data, data)]
+            most = GATHER_MINIMUM // PRIMITIVE_SIZE[operation.primitive]
+            yield self.is_array(data, operation.primitive, " and len(%s) < %d" % (data, most))
             yield ["%s = %s.tobytes()" % (data, data)]
             yield "else:"
             yield ["%s = %s(%s)" % (data, self.numbers(operation.primitive, "raw"), data)]

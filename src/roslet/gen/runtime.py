@@ -18,6 +18,7 @@ from roslet.wire.message import (
     Action,
     Message,
     Service,
+    Stamp,
     deserialize_any,
     rescue_read,
     rescue_write,
@@ -123,17 +124,30 @@ def for_dialect(dialect: Dialect, kind: Any) -> Any:
 def load(path: str | PathLike[str], dialect: Dialect | None = None) -> Types:
     """Load the definitions at `path` (a package, a workspace or its `src`, a directory of definition files).
 
-    They come before all others of their names in this process, in both dialects; each is parsed when it is
-    asked for. What is returned has the packages as attributes (`types.my_msgs.msg.Foo`), with the classes of
-    `dialect`: by default that of the package's build tool (catkin: ROS 1); where no package.xml names one,
-    ROS 1 if a definition is right in ROS 1 only (`Header`, `time`), else ROS 2. A node takes either's class
-    and uses that of its own network. Raises DefinitionError where there is no definition.
+    They come before all others of their names in this process, for both networks; each is parsed when it is asked for.
+    One definition serves on both: `time`, `duration` and the bare word `Header` of ROS 1 are, on ROS 2, the messages that
+    took their place. What is returned has the packages as attributes (`types.my_msgs.msg.Foo`), with the classes of
+    `dialect`: by default that of the package's build tool (catkin: ROS 1); where no package.xml names one, ROS 2 unless
+    a definition is right in ROS 1 only. A node takes either's class and uses that of its own network. Raises
+    DefinitionError where there is no definition, or none that `dialect`, where it is given, allows.
     """
     names: list[TypeName] = []
+    faults: list[DefinitionError] = []
     both: tuple[Dialect, ...] = ("ros1", "ros2")
     for one in both:
-        names += registry(one).load(path)
-        _forget(one, names)
+        try:
+            found = registry(one).load(path)
+        except (
+            DefinitionError
+        ) as error:  # a package's or a file's name is not legal there, or nothing is there at all
+            if one == dialect:
+                raise
+            faults.append(error)
+            continue
+        names += found
+        _forget(one, found)
+    if not names:
+        raise faults[0]
     names = sorted(set(names))
     return Types(dialect or _guess(str(path), names), names)
 
@@ -434,7 +448,7 @@ def _message_class(message: records.Message, scope: _Scope) -> type[Message]:
         body[constant.name] = constant.value
     for part in lazy:
         body[part.name] = part
-    made = type(name.name, (Message,), body)
+    made = type(name.name, (Stamp if python.base(message) == "Stamp" else Message,), body)
     for part in lazy:
         part.owner = made
     scope.classes[str(name)] = made

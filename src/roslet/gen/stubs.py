@@ -68,7 +68,10 @@ _SCALARS = {"bool": "bool", "float32": "float", "float64": "float", "string": "s
 
 def _single(kind: FieldType, imports: dict[str, None], here: TypeName) -> str:
     if kind.message is not None:
-        return _reference(kind.message, imports, here)
+        text = _reference(kind.message, imports, here)
+        stamp = kind.message.package == "builtin_interfaces" and kind.message.name in ("Time", "Duration")
+        # What node.now() gives serves as well.
+        return "%s | _time.%s" % (text, kind.message.name) if stamp else text
     primitive = kind.primitive or ""
     if primitive in ("time", "duration"):
         return "_time." + primitive.capitalize()
@@ -115,7 +118,7 @@ def _message(message: Message, imports: dict[str, None]) -> Iterator[str | Block
         body += [parameters, ") -> None: ..."]
     else:
         body.append("def __init__(self) -> None: ...")
-    yield "class %s(_message.Message):" % here.name
+    yield "class %s(_message.%s):" % (here.name, python.base(message))
     yield body
 
 

@@ -34,19 +34,26 @@ _QUOTED = 60
 
 _SEPARATOR = "---"
 _SEPARATOR_RULE = "the separator is a line that holds --- and begins with it"
-_UNSUPPORTED_ROS2 = {"time": "builtin_interfaces/Time", "duration": "builtin_interfaces/Duration"}
+# What ROS 1 calls a primitive. ROS 2 has no such words; roslet reads them as the messages that took their place, so that
+# one definition serves on both networks.
+_TIMES = {
+    "time": TypeName("builtin_interfaces", "msg", "Time"),
+    "duration": TypeName("builtin_interfaces", "msg", "Duration"),
+}
 
 
-def parse(text: str, name: TypeName, dialect: Dialect, file: str = "") -> Interface:
+def parse(text: str, name: TypeName, dialect: Dialect, file: str = "", own_header: bool = True) -> Interface:
     """The interface that `text` defines; `name.kind` says whether as a .msg, .srv or .action.
 
-    Nested types are named, not looked up. Raises DefinitionError, and nothing else, for any wrong text;
-    `file` is only shown there. Time is linear in the length of the text.
+    Nested types are named, not looked up. In ROS 2 `time` and `duration` are those of builtin_interfaces, and the bare
+    word `Header` is std_msgs/Header where the package has no `own_header`; ROS 2 itself refuses all three. Raises
+    DefinitionError, and nothing else, for any wrong text; `file` is only shown there. Time is linear in the length of the
+    text.
     """
     problem = package_problem(name.package, dialect) or interface_problem(name.name, dialect)
     if problem:
         raise DefinitionError(f"{name}: {problem}", file)
-    reader = _Reader(name, dialect, file)
+    reader = _Reader(name, dialect, file, own_header)
     if name.kind == "msg":
         return reader.message(name, text, 1)
     if name.kind == "srv":
@@ -57,13 +64,14 @@ def parse(text: str, name: TypeName, dialect: Dialect, file: str = "") -> Interf
 class _Reader:
     """Reads one file; holds what every error message needs."""
 
-    __slots__ = ("dialect", "file", "line", "name", "primitives")
+    __slots__ = ("dialect", "file", "line", "name", "own_header", "primitives")
 
-    def __init__(self, name: TypeName, dialect: Dialect, file: str) -> None:
+    def __init__(self, name: TypeName, dialect: Dialect, file: str, own_header: bool) -> None:
         self.name = name
         self.dialect: Dialect = dialect
         self.file = file
         self.line = 0
+        self.own_header = own_header
         self.primitives = PRIMITIVES[dialect]
 
     def fail(self, message: str, column: int, line: int | None = None) -> NoReturn:
@@ -215,7 +223,7 @@ class _Reader:
         self, spelled: str, type_at: int, name: str, name_at: int, after: str, after_at: int
     ) -> Constant:
         type_ = self.primitives.get(spelled)
-        if type_ is None or spelled in _UNSUPPORTED_ROS2:
+        if type_ is None or spelled in _TIMES:
             self.type(spelled, type_at)  # a spelling mistake is the better error
             self.fail(
                 f"a constant is a number, a bool or a string, not of type {_quoted(spelled)}", type_at + 1
@@ -290,9 +298,9 @@ class _Reader:
 
     def nested(self, base: str, array: Array | None, at: int) -> TypeName:
         dialect = self.dialect
-        if dialect == "ros2" and base in _UNSUPPORTED_ROS2:
-            self.fail(f"ROS 2 has no type {base}: use {_UNSUPPORTED_ROS2[base]}", at + 1)
-        if dialect == "ros1" and base == "Header" and array is None:
+        if dialect == "ros2" and base in _TIMES:
+            return _TIMES[base]
+        if base == "Header" and array is None and (dialect == "ros1" or not self.own_header):
             # Only the bare word: an array of them means the package's own type, as genmsg reads it.
             return TypeName("std_msgs", "msg", "Header")
         package, slash, name = base.partition("/")

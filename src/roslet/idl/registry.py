@@ -210,10 +210,16 @@ class Registry:
             raise DefinitionError(f"cannot be read: {error.strerror}", path) from error
         if text[:1] == "\ufeff":
             text = text[1:]
-        interface = parse(text, name, self.dialect, path)
+        interface = parse(
+            text, name, self.dialect, path, "Header" not in text or self._has_header(name.package)
+        )
         self._texts[path] = text
         self._records[name] = interface
         return interface
+
+    def _has_header(self, package: str) -> bool:
+        """Whether the package has a message Header of its own."""
+        return any(source.find(package, "msg", "Header") is not None for source in self._sources())
 
     # Checking
 

@@ -116,7 +116,9 @@ class Reactor:
         self._soon: deque[Callable[[], None]] = deque()
         self._user_soon: deque[Callable[[], None]] = deque()
         self._turn = threading.Lock()
-        self._changed = threading.Condition(threading.Lock())
+        self._changed = (
+            threading.Condition()
+        )  # of a reentrant lock: a predicate may wait for something itself
         self._waiting = 0
         self._callers = 0  # threads that would serve user code and wait for the turn
         self._lent = False  # whether the background thread has ever handed the loop to a spinner

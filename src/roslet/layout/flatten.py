@@ -110,7 +110,7 @@ class _Flatten:
             self.close_run()
             wide = primitive == "wstring"
             self.operations.append(Text(path, kind.string_bound, wide, 0 if wide else self.terminator))
-            self.set_state((min(self.modulus, 2), self.residue % 2) if wide else (1, 0))
+            self.set_state((min(self.modulus, 4), self.residue % 4) if wide else (1, 0))
         elif primitive == "time" or primitive == "duration":
             integer = "uint32" if primitive == "time" else "int32"
             if path:

@@ -97,7 +97,7 @@ class Run(Record):
 
 class Text(Record):
     """A string's bytes. UTF-8, in CDR followed by a NUL that the length counts (`terminator` is 1); `wide`:
-    UTF-16 units without NUL, in the byte order of the stream. `bound`: bytes of UTF-8, or 16-bit units,
+    UTF-16 units without NUL, each in four bytes in the byte order of the stream. `bound`: bytes of UTF-8, or 16-bit units,
     without the NUL."""
 
     __slots__ = ("bound", "path", "terminator", "wide")

@@ -30,7 +30,7 @@ def extent(operations: tuple[Operation, ...], start: int, longest: bool) -> int 
             elif operation.bound is None:
                 return None
             else:
-                position += operation.bound * (2 if operation.wide else 1) + operation.terminator
+                position += operation.bound * (4 if operation.wide else 1) + operation.terminator
         elif isinstance(operation, Octets):
             if longest:
                 if operation.bound is None:

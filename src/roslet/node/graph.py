@@ -57,8 +57,11 @@ class GraphApi:
             return default
 
     def set_parameter(self, name: str, value: Any) -> None:
-        """Set a parameter to bool, int, float, str, bytes or a list; on ROS 1 also to a dict. On ROS 2 one that is not
-        declared is declared. Raises ParameterRefused where a callback or the parameter's description refuses the value."""
+        """Set a parameter to bool, int, float, str, bytes or a list; on ROS 1 also to a dict, and integers have 32 bits
+        there. On ROS 2 one that is not declared is declared.
+
+        Raises ParameterRefused where a callback or the parameter's description refuses the value, on ROS 1 InvalidMessage.
+        """
         self._network.set_parameter(name, value)
 
     def delete_parameter(self, name: str) -> None:

@@ -22,6 +22,8 @@ ERROR = 8
 FATAL = 16
 # rosgraph_msgs/Log, and the names people read.
 LEVELS = {DEBUG: "DEBUG", INFO: "INFO", WARN: "WARN", ERROR: "ERROR", FATAL: "FATAL"}
+LEVEL_NAMES = {"debug": DEBUG, "info": INFO, "warn": WARN, "error": ERROR, "fatal": FATAL}
+"""Levels as `--log-level` names them."""
 _COLORS = {DEBUG: "\x1b[32m", WARN: "\x1b[33m", ERROR: "\x1b[31m", FATAL: "\x1b[31m"}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from roslet.errors import CallTimeout, NodeClosed, ServiceFailed
+from roslet.node.convert import message_of
 from roslet.node.future import Future
 
 TYPE_CHECKING = False
@@ -65,15 +66,8 @@ class Service:
 
     def _serialize(self, response: Any) -> bytes:
         kind = self.type.Response
-        if response is None:
-            response = kind()
-        elif isinstance(response, dict):
-            response = kind(**response)
-        elif not isinstance(response, kind):
-            raise TypeError(
-                f"{self.name}: the handler returned {type(response).__name__}, not {kind.__name__}"
-            )
-        return bytes(response.serialize())
+        made = kind() if response is None else message_of(kind, response, f"{self.name}: a response is")
+        return bytes(made.serialize())
 
     def close(self) -> None:
         """Withdraw the service. Closing twice is allowed."""
@@ -119,13 +113,8 @@ class Client:
             raise NodeClosed(f"the client of {self.name} is closed")
         self.node._check_open()
         kind = self.type.Request
-        if request is None:
-            request = kind(**fields)
-        elif isinstance(request, dict):
-            request = kind(**request)
-        elif not isinstance(request, kind):
-            raise TypeError(f"{self.name} takes {kind.__name__}, not {type(request).__name__}")
-        return bytes(request.serialize()), self.node._future(f"service {self.name}")
+        made = kind(**fields) if request is None else message_of(kind, request, f"{self.name} takes")
+        return bytes(made.serialize()), self.node._future(f"service {self.name}")
 
     def _end(self, future: Future[Any], body: Any) -> None:
         """The bytes of the response are there."""
@@ -136,6 +125,10 @@ class Client:
             future.set_exception(bad)
             return
         future.set_result(response)
+
+    def ready(self) -> bool:
+        """Whether the service is there now; ROS 1 asks the master."""
+        raise NotImplementedError
 
     def wait(self, timeout: float | None = None) -> bool:
         """Serve until the service is there; false after `timeout` seconds, or when the node closes."""

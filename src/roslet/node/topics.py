@@ -5,6 +5,9 @@ from __future__ import annotations
 import threading
 from collections import deque
 
+from roslet.errors import Unsupported
+from roslet.node.convert import message_of
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable
@@ -12,6 +15,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self
 
+    from roslet.node.events import Event
     from roslet.node.node import Node
     from roslet.node.qos import QoS
     from roslet.wire.message import Message
@@ -90,21 +94,8 @@ class Publisher:
         return self.convert(message)
 
     def convert(self, message: Any) -> Message:
-        """A message of this type from a dict, or from an equal message class. Raises TypeError."""
-        if isinstance(message, dict):
-            return self.type(**message)
-        if isinstance(message, self.type):
-            return message
-        own = self.type
-        equal = (getattr(message, "_md5sum", ""), getattr(message, "_type_hash", "")) == (
-            own._md5sum,
-            own._type_hash,
-        )
-        if equal and hasattr(message, "serialize"):
-            converted: Message = own.deserialize(message.serialize())
-            return converted
-        given = getattr(message, "_type", type(message).__name__)
-        raise TypeError(f"{self.topic} carries {own._type}, not {given}")
+        """A message of this type from what `message_of` takes. Raises TypeError."""
+        return message_of(self.type, message, f"{self.topic} carries")
 
     def _grow(self, size: int) -> None:
         self._view.release()
@@ -118,6 +109,16 @@ class Publisher:
     def on_disconnect(self, function: Callable[[str], None]) -> None:
         """Call `function(name of the subscriber)` inside spin when a subscriber goes."""
         self._on_disconnect.append(function)
+
+    def on_event(self, function: Callable[[Event], object]) -> None:
+        """ROS 2: call `function(event)` inside spin for what `roslet.node.events` has. The first function is also told what
+        came before it. Raises Unsupported on ROS 1."""
+        raise Unsupported("on_event: the ROS 1 network tells no such events")
+
+    @property
+    def gid(self) -> bytes:
+        """ROS 2: the 16 octets that name this publisher in the graph. Raises NodeClosed, Unsupported on ROS 1."""
+        raise Unsupported("gid: the ROS 1 network has no such thing")
 
     def wait_for_subscribers(self, count: int = 1, timeout: float | None = None) -> bool:
         """Serve until at least `count` subscribers are connected; false after `timeout` seconds."""
@@ -268,6 +269,16 @@ class Subscription:
             "malformed": self.malformed,
             "publishers": self.publisher_count,
         }
+
+    def on_event(self, function: Callable[[Event], object]) -> None:
+        """ROS 2: call `function(event)` inside spin for what `roslet.node.events` has. The first function is also told what
+        came before it. Raises Unsupported on ROS 1."""
+        raise Unsupported("on_event: the ROS 1 network tells no such events")
+
+    @property
+    def gid(self) -> bytes:
+        """ROS 2: the 16 octets that name this subscription in the graph. Raises NodeClosed, Unsupported on ROS 1."""
+        raise Unsupported("gid: the ROS 1 network has no such thing")
 
     def wait_for_publishers(self, count: int = 1, timeout: float | None = None) -> bool:
         """Serve until at least `count` publishers are connected; false after `timeout` seconds."""

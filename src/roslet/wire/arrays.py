@@ -64,9 +64,9 @@ class Numbers:
     """The arrays of one primitive.
 
     `type` is numpy's ndarray (a class without instances where there is no numpy) and `tag` its dtype, else
-    the type code. `view(buffer, tag, count, offset)` makes a reader's array; `empty` is one of no elements,
-    shared and not to be written. `zeros(count)` is a new array; `raw(value)` the little-endian bytes of what
-    a writer was given.
+    the type code; `array` is the standard library's array, where it holds what the wire does. `view(buffer, tag,
+    count, offset)` makes a reader's array; `empty` is one of no elements, shared and not to be written.
+    `zeros(count)` is a new array; `raw(value)` the little-endian bytes of what a writer was given.
     """
 
     def __init__(self, primitive: str, numpy: "Any") -> None:
@@ -75,6 +75,9 @@ class Numbers:
         self.size = struct.calcsize("<" + self.code)
         self.numpy = numpy
         self.packers = number_packers(self.code)
+        # The array of the standard library, where its elements have the size and byte order of the wire.
+        plain = CPYTHON and sys.byteorder == "little" and primitive != "bool"
+        self.array: Any = _array() if plain and _array()(self.code).itemsize == self.size else _NoArray
         if numpy is not None:
             name = "?" if primitive == "bool" else "<" + self.code.replace("b", "i1").replace("B", "u1")
             self.type: Any = numpy.ndarray

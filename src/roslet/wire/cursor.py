@@ -182,7 +182,7 @@ class Writer:
         if not isinstance(value, str):
             raise InvalidMessage("expected a string, got %s %s" % (_type_name(value), _shown(value)), path)
         data = encode_wide(value, self.order == ">")
-        units = len(data) // 2
+        units = len(data) // 4
         if bound is not None and units > bound:
             raise InvalidMessage("at most %d 16-bit units, got %d" % (bound, units), path)
         self.count(units, path)
@@ -338,10 +338,13 @@ class Reader:
     def wide(self, bound: "int | None", path: str) -> str:
         """A wide string."""
         units = self.number("uint32", path)
-        at = self.take(units * 2, path)
+        at = self.take(units * 4, path)
         if bound is not None and units > bound:
             raise MalformedMessage("at most %d 16-bit units, got %d" % (bound, units), at - self.start, path)
-        return decode_wide(self.buffer[at : at + units * 2], self.order == ">")
+        try:
+            return decode_wide(self.buffer[at : at + units * 4], self.order == ">")
+        except ValueError:
+            raise MalformedMessage("a unit that is no character", at - self.start, path) from None
 
     def array(self, base: "Any", kind: int, size: int, bound: "int | None", path: str) -> "Any":
         """An array."""

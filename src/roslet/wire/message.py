@@ -161,6 +161,57 @@ class Message:
         return "%s(%s)" % (type(self).__name__, inside)
 
 
+class Stamp(Message):
+    """The base of builtin_interfaces/Time and Duration of ROS 2: what `roslet.Time` and `Duration` offer as well, so that
+    one program serves on both networks."""
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:  # slots of the generated classes
+
+        @property
+        def sec(self) -> int: ...
+        @sec.setter
+        def sec(self, value: int) -> None: ...
+        @property
+        def nanosec(self) -> int: ...
+        @nanosec.setter
+        def nanosec(self, value: int) -> None: ...
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Message) or not hasattr(other, "nanosec"):
+            return Message.__eq__(self, other)
+        return self.to_nsec() == other.to_nsec()  # type: ignore[attr-defined, no-any-return]
+
+    __hash__ = None
+
+    def to_sec(self) -> float:
+        """Seconds as a float; of a present-day time about 100 ns are lost in the rounding."""
+        return self.sec + self.nanosec / 1e9
+
+    def to_nsec(self) -> int:
+        """Whole nanoseconds, exact."""
+        return self.sec * 1000000000 + self.nanosec
+
+    @property
+    def secs(self) -> int:
+        """`sec`, by its name on ROS 1."""
+        return self.sec
+
+    @secs.setter
+    def secs(self, value: int) -> None:
+        self.sec = value
+
+    @property
+    def nsecs(self) -> int:
+        """`nanosec`, by its name on ROS 1."""
+        return self.nanosec
+
+    @nsecs.setter
+    def nsecs(self, value: int) -> None:
+        self.nanosec = value
+
+
 def same(one: "Any", other: "Any") -> bool:
     """Whether two field values are equal: arrays by their elements, whatever holds them."""
     if one is other:
@@ -186,7 +237,8 @@ def same(one: "Any", other: "Any") -> bool:
 def _copied(value: "Any", base: "Any", kind: int) -> "Any":
     if kind == SINGLE:
         if not isinstance(base, str):
-            return value.copy()
+            # What stands in for a Stamp, such as roslet.Time, becomes one.
+            return value.copy() if isinstance(value, Message) else base(value.sec, value.nanosec)
         if base == "time" or base == "duration":
             made = object.__new__(type(value))
             made.secs = value.secs

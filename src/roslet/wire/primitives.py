@@ -129,12 +129,20 @@ if CPYTHON:
         return text.encode("utf-8", "surrogateescape")
 
     def decode_wide(data: "bytes | bytearray | memoryview", big: bool) -> str:
-        """UTF-16 without byte order mark; lone surrogates stay what they are."""
-        return str(data, "utf-16-be" if big else "utf-16-le", "surrogatepass")
+        """UTF-16 units, each in four bytes, as Fast DDS and rmw_cyclonedds send them; lone surrogates stay what they are.
+        Raises ValueError where a unit is no code point either."""
+        text = str(data, "utf-32-be" if big else "utf-32-le", "surrogatepass")
+        if text.isascii():
+            return text
+        return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "surrogatepass")
 
     def encode_wide(text: str, big: bool) -> bytes:
         """The reverse of `decode_wide`."""
-        return text.encode("utf-16-be" if big else "utf-16-le", "surrogatepass")
+        units = text.encode("utf-16-be" if big else "utf-16-le", "surrogatepass")
+        data = bytearray(2 * len(units))
+        at = 2 if big else 0
+        data[at::4], data[at + 1 :: 4] = units[0::2], units[1::2]
+        return bytes(data)
 
 else:
     FAILURES = (TypeError, ValueError, AttributeError, LookupError, OverflowError)
@@ -182,11 +190,13 @@ else:
         return text.encode("utf-8")
 
     def decode_wide(data: "bytes | bytearray | memoryview", big: bool) -> str:
-        high, low = (0, 1) if big else (1, 0)
+        form = ">I" if big else "<I"
         out = []
         first = 0
-        for at in range(0, len(data) - 1, 2):
-            unit = data[at + high] << 8 | data[at + low]
+        for at in range(0, len(data) - 3, 4):
+            unit = struct.unpack_from(form, data, at)[0]
+            if unit > 0x10FFFF:
+                raise ValueError("no code point")
             if 0xD800 <= unit < 0xDC00:
                 first = unit
             elif 0xDC00 <= unit < 0xE000 and first:
@@ -198,7 +208,7 @@ else:
 
     def encode_wide(text: str, big: bool) -> bytes:
         out = bytearray()
-        form = ">H" if big else "<H"
+        form = ">I" if big else "<I"
         for letter in text:
             code = ord(letter)
             if code >= 0x10000:

@@ -1,8 +1,8 @@
 """ROS 1 `time` and `duration` as values: whole seconds and nanoseconds, with the arithmetic of ROS 1's own
 classes.
 
-Runs on MicroPython. A serialiser touches `secs` and `nsecs` only, so any object with these two serves in a
-message.
+Runs on MicroPython. A ROS 1 serialiser touches `secs` and `nsecs` only, so any object with these two serves in a message;
+that of a ROS 2 message touches `sec` and `nanosec`, which these classes have too.
 """
 
 TYPE_CHECKING = False
@@ -32,6 +32,24 @@ class _Seconds:
         self.secs = secs
         self.nsecs = int(nsecs)
         self.canon()
+
+    @property
+    def sec(self) -> int:
+        """`secs`, by its name on ROS 2."""
+        return self.secs
+
+    @sec.setter
+    def sec(self, value: int) -> None:
+        self.secs = value
+
+    @property
+    def nanosec(self) -> int:
+        """`nsecs`, by its name on ROS 2."""
+        return self.nsecs
+
+    @nanosec.setter
+    def nanosec(self, value: int) -> None:
+        self.nsecs = value
 
     def canon(self) -> None:
         """Bring `nsecs` into 0 to 999,999,999 and carry into `secs`."""

@@ -8,9 +8,9 @@ complete when everyone has all endpoints and all of those samples.
 from __future__ import annotations
 
 import gc
-import resource
+import sys
 import time
-import tracemalloc
+import types
 from typing import NamedTuple
 
 from engine.rtps.network import Host, Network
@@ -27,7 +27,8 @@ STEADY = 30.0
 
 class Cost(NamedTuple):
     """What discovery cost. Packets and bytes are those sent, a multicast packet once, by all nodes together until it was
-    complete and acknowledged; `seconds` are virtual; `cpu` is this machine's, and `peak` octets, for one node."""
+    complete and acknowledged; `seconds` are virtual; `cpu` is this machine's, and `held` octets of memory, for one node;
+    `steady_` is a second of all nodes together, afterwards."""
 
     nodes: int
     packets: int
@@ -37,7 +38,7 @@ class Cost(NamedTuple):
     steady_packets: float
     steady_bytes: float
     cpu: float
-    peak: int
+    held: int
     counters: dict[str, int]
 
 
@@ -75,16 +76,26 @@ def complete(network: Network) -> bool:
     return True
 
 
-def measure(
-    nodes: int, loss: float = 0.0, memory: bool = False, spread: float = 0.0, steady: float = STEADY
-) -> Cost:
-    """Start `nodes` at once, or evenly over `spread` seconds, and watch. `memory` makes it some three times slower."""
+def held(participant: object) -> int:
+    """Octets of all that hangs on a participant, code and constants apart."""
+    seen: set[int] = set()
+    waiting = [participant]
+    total = 0
+    while waiting:
+        one = waiting.pop()
+        if id(one) in seen or isinstance(one, type | types.ModuleType | types.FunctionType | types.CodeType):
+            continue
+        seen.add(id(one))
+        total += sys.getsizeof(one)
+        waiting += gc.get_referents(one)
+    return total
+
+
+def measure(nodes: int, loss: float = 0.0, spread: float = 0.0, steady: float = STEADY) -> Cost:
+    """Start `nodes` at once, or evenly over `spread` seconds, and watch."""
     network = Network(5, loss)
     network.deaf = True
     network.max_steps = 10**9
-    gc.collect()
-    if memory:
-        tracemalloc.start()
     begin = time.process_time()
     for _ in range(nodes):
         add_node(network)
@@ -99,29 +110,20 @@ def measure(
     seconds = network.now - started
     packets, size, received = network.sent, network.bytes, network.received
     cpu = (time.process_time() - begin) / nodes
-    peak = tracemalloc.get_traced_memory()[1] // nodes if memory else 0
-    if memory:
-        tracemalloc.stop()
     network.run(steady)
     counters: dict[str, int] = {}
     for host in network.hosts:
         for reason, count in host.participant.counters.items():
             counters[reason] = counters.get(reason, 0) + count
-    span = steady or 1.0
     return Cost(
         nodes,
         packets,
         received,
         size,
         seconds,
-        (network.sent - packets) / span,
-        (network.bytes - size) / span,
+        (network.sent - packets) / steady,
+        (network.bytes - size) / steady,
         cpu,
-        peak,
+        held(network.hosts[0].participant),
         counters,
     )
-
-
-def resident() -> int:
-    """The most octets that this process has held."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024

@@ -444,6 +444,27 @@ def test_an_endpoint_that_nothing_reaches_gets_nothing() -> None:
     assert victim.counters == {}
 
 
+def test_announcements_of_one_participant_take_no_more_than_its_share() -> None:
+    victim = Victim(limits=Limits(discovery_share=200000))
+    octets = (64000).to_bytes(4, "little") + b"u" * 64000
+    large = hand.parameter(0x2C, octets)
+    victim.take(hand.spdp())
+    for number in range(1, 8):
+        said = hand.endpoint(PREFIX + bytes((0, 0, number, 3)), "t", "T", "<", large)
+        victim.take(hand.message(hand.data(PUBLICATIONS_WRITER, number, said, length=0)))
+    assert len(victim.participant.endpoints) == 3
+    assert victim.counters == {"discovery-bytes-full": 4}
+    # What it says anew takes the place of what it said before; what it takes back makes room.
+    small = hand.endpoint(PREFIX + bytes((0, 0, 1, 3)), "t", "T")
+    victim.take(hand.message(hand.data(PUBLICATIONS_WRITER, 8, small)))
+    said = hand.endpoint(PREFIX + bytes((0, 0, 9, 3)), "t", "T", "<", large)
+    victim.take(hand.message(hand.data(PUBLICATIONS_WRITER, 9, said, length=0)))
+    assert len(victim.participant.endpoints) == 4
+    assert victim.counters == {"discovery-bytes-full": 4}
+    victim.take(hand.departure())
+    assert victim.participant.endpoints == {} and victim.participant._matching._budget.left == 64 << 20
+
+
 @pytest.mark.parametrize(
     ("said", "reason"),
     [
@@ -641,6 +662,16 @@ def test_samples_that_come_too_early_are_held_to_the_bound() -> None:
     assert [number for number, _ in victim.samples()] == list(range(1, 12))
     victim.take(hand.message(hand.data(WRITER, 13, b"\0\1\0\0" + bytes(2000))))
     assert proxy.held_bytes == 0
+
+
+def test_samples_of_no_octets_that_come_too_early_are_held_and_forgotten() -> None:
+    victim, reader = met()
+    for sequence in (3, 4, 5):
+        victim.take(hand.message(hand.data(WRITER, sequence, b"", flags=0)))
+    assert len(reader.proxies[PREFIX + WRITER].held) == 3
+    victim.take(hand.departure())
+    assert reader.proxies == {}
+    assert victim.counters == {}
 
 
 def test_events_that_nobody_takes_stop_at_the_bound() -> None:

@@ -597,7 +597,10 @@ def test_a_reader_that_has_said_nothing_yet_is_told_where_we_are_before_each_of_
     sent = []
     for number in range(3):
         writer.write(body(number), network.now)
-        sent += [b"".join([bytes(part) for part in parts]) for parts, _ in one.participant.datagrams_to_send(network.now)]
+        sent += [
+            b"".join([bytes(part) for part in parts])
+            for parts, _ in one.participant.datagrams_to_send(network.now)
+        ]
     # A datagram with INFO_DST and HEARTBEAT, one with INFO_TS and DATA, and so on.
     assert [(datagram[20], datagram[36] if datagram[20] == 0x0E else datagram[32]) for datagram in sent] == [
         (0x0E, 0x07),

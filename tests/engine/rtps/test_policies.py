@@ -273,7 +273,7 @@ def test_no_peer_takes_all_of_the_room_for_fragments() -> None:
         for sequence in range(1, 9):
             piece = DataFrag(reader.entity_id, one.entity_id, sequence, 1, 1, 1000, 60000, bytes(1000))
             victim.participant.receive_datagram(front + piece.emit(), ("10.0.0.9", 1), network.now)
-    assert victim.participant._budget.left == 240000
+    assert victim.participant._budget.left == 239940  # a sample, and an octet for each of its fragments
     assert victim.participant.counters["assembly-bytes-full"] == 39
     writer.write(body(7, 90000), network.now)
     assert network.run(5, lambda: writer.acknowledged(1))
@@ -312,3 +312,20 @@ def test_a_participant_has_no_more_endpoints_than_the_limit() -> None:
     network.run(1)
     assert len(victim.participant.endpoints) == 6
     assert victim.participant.counters == {"endpoints-full": 4}
+
+
+def test_endpoints_that_have_nothing_to_do_are_not_looked_at() -> None:
+    network = Network()
+    one, other = network.host(), network.host()
+    for number in range(40):
+        one.participant.create_writer("t%d" % number, "T", RELIABLE, 0.0)
+        other.participant.create_reader("t%d" % number, "T", RELIABLE, 0.0)
+    assert network.run(5, lambda: len(other.of(events.EndpointMatched)) == 40)
+    network.run(2)
+    for host in (one, other):
+        # The next announcement, and the end of the other's lease.
+        assert host.participant._schedule.live == 2
+    writer = next(iter(one.participant.writers.values()))
+    writer.write(body(1), network.now)
+    network.run(0.001)
+    assert one.participant._schedule.live == 3

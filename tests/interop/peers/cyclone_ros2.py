@@ -300,7 +300,9 @@ def profile(qos):
     live = live.Automatic if qos["liveliness"] == "automatic" else live.ManualByTopic
     return Qos(
         Policy.Reliability.Reliable(duration(seconds=10)) if reliable else Policy.Reliability.BestEffort,
-        Policy.Durability.TransientLocal if qos["durability"] == "transient_local" else Policy.Durability.Volatile,
+        Policy.Durability.TransientLocal
+        if qos["durability"] == "transient_local"
+        else Policy.Durability.Volatile,
         Policy.History.KeepAll if qos["history"] == "keep_all" else Policy.History.KeepLast(qos["depth"]),
         Policy.DurabilityService(
             cleanup_delay=0,
@@ -496,7 +498,9 @@ def call(key, first, count, size, timeout):
 
 def participants():
     """How many participants Cyclone knows of, its own included."""
-    return sum(1 for one in known.read(1000) if one.sample_info.valid_data and one.sample_info.instance_state == 16)
+    return sum(
+        1 for one in known.read(1000) if one.sample_info.valid_data and one.sample_info.instance_state == 16
+    )
 
 
 def begin():

@@ -3,6 +3,7 @@ what it forks: see `mortal`.
 """
 
 import array
+import contextlib
 import importlib
 import os
 import sys
@@ -113,7 +114,12 @@ def publish(key, first, count, size, pause):
 
 def close(key):
     made, _ = endpoints.pop(key)
-    for destroy in (node.destroy_publisher, node.destroy_subscription, node.destroy_service, node.destroy_client):
+    for destroy in (
+        node.destroy_publisher,
+        node.destroy_subscription,
+        node.destroy_service,
+        node.destroy_client,
+    ):
         if destroy(made):  # False for what is another kind of thing
             return
 
@@ -206,10 +212,8 @@ def begin(name, namespace="/"):
     executor.add_node(node)
 
     def spin():
-        try:
+        with contextlib.suppress(ExternalShutdownException):
             executor.spin()
-        except ExternalShutdownException:
-            pass
 
     threading.Thread(target=spin, daemon=True).start()
 

@@ -133,8 +133,8 @@ def number(type_name, message):
 
 
 def build(value, make, octets, octet=bytes):
-    """The message of a sample: `make(TYPE, FIELDS)` makes one, `octets(BYTES)` what stands for an array of bytes, `octet` for
-    one `byte`."""
+    """The message of a sample: `make(TYPE, FIELDS)` makes one, `octets(BYTES)` what stands for an array of bytes,
+    `octet` for one `byte`."""
     if isinstance(value, list):
         return [build(one, make, octets, octet) for one in value]
     if isinstance(value, bytes):
@@ -161,7 +161,7 @@ def differences(value, message, path=""):
         if len(message) != len(value):
             return ["%s: %d elements, expected %d" % (path, len(message), len(value))]
         found = []
-        for k, (one, other) in enumerate(zip(value, message)):
+        for k, (one, other) in enumerate(zip(value, message, strict=True)):
             found += differences(one, other, "%s[%d]" % (path, k))
         return found
     if isinstance(value, (bytes, bytearray)):
@@ -206,7 +206,11 @@ def request(type_name, i, size):
     if type_name == "std_srvs/srv/Trigger":
         return {}
     header = {"_type": "std_msgs/msg/Header", "stamp": _stamp(i), "frame_id": "%d" % i}
-    info = {"_type": "sensor_msgs/msg/CameraInfo", "header": header, "d": [float(k) for k in range(size // 8)]}
+    info = {
+        "_type": "sensor_msgs/msg/CameraInfo",
+        "header": header,
+        "d": [float(k) for k in range(size // 8)],
+    }
     return {"camera_info": info}
 
 

@@ -20,15 +20,18 @@ from ros2_samples import QOS, Inbox, build, differences, expected, request, resp
 
 import roslet
 from roslet.gen.runtime import message_class
+from roslet.io.ros2 import Ros2Shell
+from roslet.io.select import reactor
+from roslet.names import parse_ros2_network
 from roslet.node import events as kinds
-from roslet.node.ros2.qos import from_dds
+from roslet.node.ros2.qos import from_dds, to_dds
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent / "ros2_ws"
 
 endpoints = {}
 inboxes = {}
 facts = {}
-nodes = {}  # of a crowd
+members = []  # of a crowd
 node = None
 
 
@@ -175,8 +178,8 @@ def tables():
 
 
 def keyed(key, topic, type_name):
-    """A reader of a keyed topic, which a node does not have: the participant's own. It tells of samples by their payload, and
-    of instances by their state. The key is a string, and the first field; Cyclone sends no key hash."""
+    """A reader of a keyed topic, which a node does not have: the participant's own. It tells of samples by their payload,
+    and of instances by their state. The key is a string, and the first field; Cyclone sends no key hash."""
     from roslet.engine.rtps.events import InstanceChanged
     from roslet.wire.rtps import qos as policies
 
@@ -212,18 +215,40 @@ def begin(name, namespace="", network=None):
     node.start()
 
 
+class Member:
+    """One of a crowd: a participant of its own with a node, a writer and a reader of /crowd. It is made below roslet.Node,
+    whose services of parameters would be hundreds of endpoints more for each to learn of."""
+
+    def __init__(self, number):
+        self.number = number
+        self.heard = []
+        name, kind = "crowd_%d" % number, message_class("ros2", "std_msgs/msg/UInt32")
+        self.shell = Ros2Shell(reactor(), parse_ros2_network(None, os.environ), "/" + name, print)
+        self.payload = kind(data=number).serialize()
+        with self.shell.reactor.lock:
+            now, context = self.shell.reactor.now(), self.shell.context
+            handle = context.add_node(name, "/", now)
+            topic = ("rt/crowd", "std_msgs::msg::dds_::UInt32_", to_dds(roslet.QoS()), kind._type_hash, now)
+            self.writer = context.create_writer(handle, *topic)
+            self.reader = context.create_reader(handle, *topic, sink=self.hear)
+            self.shell.flush()
+
+    def hear(self, proxy, value, when):
+        self.heard.append(int.from_bytes(bytes(value.payload[4:8]), "little"))
+
+    def publish(self):
+        with self.shell.reactor.lock:
+            self.writer.write(self.payload, self.shell.reactor.now())
+            self.shell.flush()
+
+
 def crowd(first, count):
-    """So many nodes, of which each has an enclave and thus a participant of its own; they all talk to all on /crowd."""
-    for i in range(first, first + count):
-        made = roslet.Node("crowd_%d" % i, arguments=["--ros-args", "--enclave", "/crowd_%d" % i])
-        inbox = Inbox("std_msgs/msg/UInt32", 0)
-        made.subscribe("/crowd", "std_msgs/msg/UInt32", inbox, qos=roslet.QoS(depth=100))
-        nodes[i] = (made, made.publisher("/crowd", "std_msgs/msg/UInt32"), inbox)
+    members.extend(Member(number) for number in range(first, first + count))
 
 
-def crowd_publish():
-    for i, (_, talker, _) in nodes.items():
-        talker.publish(data=i)
+def crowd_matched():
+    """How many readers and how many writers each has matched with, each number once. Its own are not among them."""
+    return sorted({len(one.writer.proxies) for one in members} | {len(one.reader.proxies) for one in members})
 
 
 def mortal(name):
@@ -261,10 +286,10 @@ COMMANDS = {
     "process": process,
     "tables": tables,
     "crowd": crowd,
-    "crowd_matched": lambda: sorted({talker.subscriber_count for _, talker, _ in nodes.values()}),
-    "crowd_publish": crowd_publish,
-    "crowd_heard": lambda: [sorted(inbox.numbers) for _, _, inbox in nodes.values()],
-    "crowd_close": lambda: [made.close() for made, _, _ in nodes.values()] and None,
+    "crowd_matched": crowd_matched,
+    "crowd_publish": lambda: [one.publish() for one in members] and None,
+    "crowd_heard": lambda: [sorted(one.heard) for one in members],
+    "crowd_close": lambda: [one.shell.close() for one in members] and None,
     "close_node": lambda: node.close(),
     "mortal": lambda name: fork(lambda: mortal(name)),
     "kill": kill,

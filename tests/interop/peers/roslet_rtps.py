@@ -1,5 +1,5 @@
 """A roslet peer on the participant itself, without a node. roslet_rtps.py ROLE COUNT [SIZE] [best_effort] [transient_local]
-[small_fragments] [ros2://...]
+[ros2://...]
 
 The same facts in the same words as rclpy_rtps.py and cyclone_rtps.py.
 """
@@ -44,8 +44,7 @@ def main():
 
     reactor = Reactor()
     url = next((word for word in sys.argv if word.startswith("ros2:")), None)
-    sizes = {"fragment_size": 1400} if "small_fragments" in sys.argv else {}
-    domain = Domain(reactor, on_event, parse_ros2_network(url, os.environ), **sizes)
+    domain = Domain(reactor, on_event, parse_ros2_network(url, os.environ))
     participant = domain.participant
     ends = time.monotonic() + 30.0
     with reactor.lock:

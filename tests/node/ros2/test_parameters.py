@@ -214,3 +214,18 @@ def test_a_type_is_described_to_whoever_asks(make2: Ros2Nodes) -> None:
         wrong = client.call(type_name="geometry_msgs/msg/Point", type_hash="RIHS01_0", timeout=5.0)
         assert not wrong.successful and "RIHS01_0" in wrong.failure_reason
         assert not client.call(type_name="no/such/Type", timeout=5.0).successful
+
+
+def test_arguments_set_the_level_of_the_log(make2: Ros2Nodes) -> None:
+    quiet = make2("quiet", "--log-level", "ERROR")
+    told: list[str] = []
+    other = make2("arm", "--log-level", "fatal", "--log-level", "left.arm:=debug", namespace="/left")
+    qos = roslet.QoS(10, durability="transient_local")
+    other.subscribe("/rosout", "rcl_interfaces/msg/Log", lambda entry: told.append(entry.msg), qos=qos)
+    quiet.log.warning("not this")
+    quiet.log.error("this")
+    other.log.debug("and this")
+    wait_until(lambda: len(told) == 2, "both come")
+    assert sorted(told) == ["and this", "this"]
+    with pytest.raises(roslet.InvalidName, match="loud"):
+        make2("node", "--log-level", "loud")

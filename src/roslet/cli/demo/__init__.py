@@ -18,12 +18,18 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Declare the command."""
     finish(parser, run, "roslet demo\nroslet demo --seconds 5 --folder /tmp/demo --json", "json")
     parser.description = (
-        "See it work, in about 20 seconds.\n\nStarts a master, a talker and a listener of mros_comm_measure/Coordinate, "
-        "and a camera and a\nviewer of sensor_msgs/Image, each a process of its own; checks every message; times the way\n"
-        "there and back against two raw sockets. Exit code 0 where every message came and was right."
+        "See it work, in about 20 seconds.\n\nOn ROS 1: starts a master, a talker and a listener of "
+        "mros_comm_measure/Coordinate, and a camera\nand a viewer of sensor_msgs/Image. On ROS 2: the same talker "
+        "and listener over RTPS, and a listener\non CycloneDDS where Python's cyclonedds is installed. Each is a "
+        "process of its own. Checks every\nmessage; times the way there and back against raw sockets. Exit code 0 "
+        "where every message came\nand was right."
     )
     parser.add_argument(
-        "--seconds", type=positive, default=12.0, metavar="SECONDS", help="how long they talk (default 12)"
+        "--seconds",
+        type=positive,
+        default=6.0,
+        metavar="SECONDS",
+        help="how long they talk on each network (default 6)",
     )
     parser.add_argument(
         "--rate", type=positive, default=200.0, metavar="HZ", help="coordinates a second (default 200)"

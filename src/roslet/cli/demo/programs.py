@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import os
 import pathlib
@@ -9,6 +10,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from typing import IO, TYPE_CHECKING, Any
 
 import roslet
@@ -32,15 +34,29 @@ def folder() -> pathlib.Path:
     raise CommandError("the example programs are not there: neither in the package nor in a checkout")
 
 
-class Program:
-    """One example program. `figures` is the latest of the JSON lines that it prints."""
+def cyclone_python() -> str | None:
+    """An interpreter that has the package cyclonedds: this one, or that of the tests' peers. None where there is none."""
+    if importlib.util.find_spec("cyclonedds") is not None:
+        return sys.executable
+    peers = os.environ.get("ROSLET_PEERS") or os.path.expanduser("~/.cache/roslet/peers")
+    there = os.path.join(peers, "cyclone", "bin", "python")
+    if not os.access(there, os.X_OK):
+        return None
+    done = subprocess.run(
+        [there, "-c", "import cyclonedds"], stdin=subprocess.DEVNULL, capture_output=True, check=False
+    )
+    return None if done.returncode else there
 
-    def __init__(self, name: str, arguments: list[str], environment: dict[str, str]) -> None:
+
+class Program:
+    """One program. `figures` is the latest of the JSON lines that it prints."""
+
+    def __init__(self, name: str, command: list[str], environment: dict[str, str]) -> None:
         self.name = name
         self.figures: dict[str, Any] = {}
         self._errors: list[str] = []
         self.process = subprocess.Popen(
-            [sys.executable, str(folder() / name), *arguments],
+            command,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -73,6 +89,13 @@ class Program:
     def running(self) -> bool:
         """Whether the process still runs."""
         return self.process.poll() is None
+
+    def wait_ready(self, seconds: float) -> bool:
+        """Wait for its first report, which says that it is ready; false where it ended or did not come."""
+        end = time.monotonic() + seconds
+        while not self.figures and self.running and time.monotonic() < end:
+            time.sleep(0.005)
+        return bool(self.figures)
 
     def finish(self, seconds: float) -> str:
         """Wait until the program ends by itself; what was wrong with it, "" where nothing was."""
@@ -122,7 +145,17 @@ class Programs:
     def start(self, name: str, *arguments: object) -> Program:
         """Start one of the example programs; its network and --json are given to it."""
         given = [str(argument) for argument in arguments]
-        program = Program(name, ["--network", self.network, "--json", *given], self._environment)
+        command = [sys.executable, str(folder() / name), "--network", self.network, "--json", *given]
+        return self._add(Program(name, command, self._environment))
+
+    def start_cyclone(self, python: str, domain: int, *arguments: object) -> Program:
+        """Start the CycloneDDS program, in the interpreter that has cyclonedds."""
+        path = pathlib.Path(__file__).with_name("cyclone_peer.py")
+        command = [python, str(path), str(domain), *map(str, arguments)]
+        environment = {name: value for name, value in self._environment.items() if name != "PYTHONPATH"}
+        return self._add(Program(path.name, command, environment))
+
+    def _add(self, program: Program) -> Program:
         self.all.append(program)
         return program
 

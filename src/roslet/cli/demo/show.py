@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pathlib
 import statistics
 import tempfile
@@ -11,7 +12,7 @@ from struct import unpack_from
 from typing import TYPE_CHECKING, Any
 
 from roslet.cli.demo import floor
-from roslet.cli.demo.programs import Program, Programs
+from roslet.cli.demo.programs import Program, Programs, cyclone_python
 from roslet.cli.output import Live, emit_json, seconds_text, table
 
 if TYPE_CHECKING:
@@ -19,94 +20,168 @@ if TYPE_CHECKING:
 
 PICTURES_PER_SECOND = 10.0
 WIDTH, HEIGHT = 320, 240
-# Seconds that the floor is timed, before and again after the nodes have talked.
-FLOOR_SECONDS = 1.5
+# Seconds that each floor is timed, before and again after the nodes have talked.
+FLOOR_SECONDS = 1.0
 # Seconds beyond the planned ones for processes to start, find each other and end.
 GRACE = 15.0
+# Seconds between the talker's finding a CycloneDDS reader and the first message: that reader takes only what is sent after
+# it has found the talker, which no writer is told.
+SETTLE = 1.0
+COORDINATE = "mros_comm_measure/Coordinate"
+ROS1, ROS2 = "ROS 1", "ROS 2"
+CYCLONE = "CycloneDDS"
 
 
 def demonstrate(arguments: argparse.Namespace) -> int:
     """The demonstration; 0 where every message came and was right."""
-    from roslet.master.server import MasterServer
-
     folder = pathlib.Path(arguments.folder or tempfile.mkdtemp(prefix="roslet-demo-"))
     folder.mkdir(parents=True, exist_ok=True)
-    quiet = arguments.json
-
-    def say(text: str) -> None:
-        if not quiet:
-            print(text, flush=True)
-
-    say(
-        f"raw sockets: {arguments.rate:g} round trips of {floor.SIZE} bytes a second, {FLOOR_SECONDS:g} s ..."
-    )
-    trips = floor.measure(FLOOR_SECONDS, arguments.rate)
-    with MasterServer("127.0.0.1", 0) as master, Programs(f"ros1://127.0.0.1:{master.port}") as programs:
-        say(f"master:      ROS_MASTER_URI={master.uri}")
-        cast = _start(programs, arguments.seconds, arguments.rate, folder)
-        say(f"processes:   {', '.join(program.name for program in programs.all)}")
-        _watch(cast, programs, arguments, trips, quiet)
-        problems = [problem for program in programs.all if (problem := program.finish(GRACE))]
-        left = _registered(master)
-    trips += floor.measure(FLOOR_SECONDS, arguments.rate)
-    result = judge({name: program.figures for name, program in cast.items()}, trips, folder / "image.png")
-    result["problems"] = problems + result["problems"]
-    if left:
-        result["problems"].append(f"still registered at the master: {', '.join(left)}")
-    if quiet:
+    demo = _Demo(arguments, folder)
+    demo.time_floors()
+    demo.ros1()
+    demo.ros2()
+    demo.time_floors()
+    result = demo.result()
+    if arguments.json:
         emit_json(result)
     else:
         _print(result)
     return 1 if result["problems"] else 0
 
 
-def _start(programs: Programs, seconds: float, rate: float, folder: pathlib.Path) -> dict[str, Program]:
-    """Listeners first, so that the first message has somebody to hear it; the talkers wait for them."""
-    points = max(1, round(seconds * rate))
-    pictures = max(1, round(seconds * PICTURES_PER_SECOND))
-    limit = seconds + GRACE  # a program that waits for a lost message ends nevertheless
-    return {
-        "listener": programs.start("coordinate_listener.py", "--count", points, "--seconds", limit),
-        "viewer": programs.start(
-            "image_viewer.py", "--check", "--count", pictures, "--seconds", limit, "--save", folder / "image.png"
-        ),
-        "talker": programs.start("coordinate_talker.py", "--count", points, "--rate", rate),
-        "camera": programs.start(
-            "image_publisher.py", "--count", pictures, "--rate", PICTURES_PER_SECOND,
-            "--width", WIDTH, "--height", HEIGHT,
-        ),
-    }  # fmt: skip
+class _Demo:
+    """One run: what was timed, what the programs said, what was wrong."""
+
+    def __init__(self, arguments: argparse.Namespace, folder: pathlib.Path) -> None:
+        self.seconds: float = arguments.seconds
+        self.rate: float = arguments.rate
+        self.quiet: bool = arguments.json
+        self.folder = folder
+        self.points = max(1, round(self.seconds * self.rate))
+        self.floors: dict[str, list[float]] = {ROS1: [], ROS2: []}
+        self.figures: dict[str, dict[str, dict[str, Any]]] = {ROS1: {}, ROS2: {}}
+        self.problems: list[str] = []
+
+    def say(self, text: str) -> None:
+        if not self.quiet:
+            print(text, flush=True)
+
+    def time_floors(self) -> None:
+        if not self.floors[ROS1]:
+            self.say(
+                f"raw sockets: {self.rate:g} round trips a second, over TCP ({floor.SIZE} bytes) and over UDP "
+                f"({floor.DATAGRAM} bytes) ..."
+            )
+        self.floors[ROS1] += floor.measure(FLOOR_SECONDS, self.rate)
+        self.floors[ROS2] += floor.measure_datagrams(FLOOR_SECONDS, self.rate)
+
+    def ros1(self) -> None:
+        """A master, the Coordinate pair and the images."""
+        from roslet.master.server import MasterServer
+
+        pictures = max(1, round(self.seconds * PICTURES_PER_SECOND))
+        limit = self.seconds + GRACE  # a program that waits for a lost message ends nevertheless
+        with MasterServer("127.0.0.1", 0) as master, Programs(f"ros1://127.0.0.1:{master.port}") as programs:
+            # Listeners first, so that the first message has somebody to hear it; the talkers wait for them.
+            cast = {
+                "listener": programs.start("coordinate_listener.py", "--count", self.points, "--seconds", limit),
+                "viewer": programs.start(
+                    "image_viewer.py", "--check", "--count", pictures, "--seconds", limit,
+                    "--save", self.folder / "image.png",
+                ),
+                "talker": programs.start("coordinate_talker.py", "--count", self.points, "--rate", self.rate),
+                "camera": programs.start(
+                    "image_publisher.py", "--count", pictures, "--rate", PICTURES_PER_SECOND,
+                    "--width", WIDTH, "--height", HEIGHT,
+                ),
+            }  # fmt: skip
+            self.say(f"\n{ROS1}: ROS_MASTER_URI={master.uri}")
+            self.say(f"processes: {', '.join(program.name for program in programs.all)}")
+            self._watch(ROS1, cast, programs)
+            left = _registered(master)
+        if left:
+            self.problems.append(f"still registered at the master: {', '.join(left)}")
+
+    def ros2(self) -> None:
+        """The same pair over RTPS, and CycloneDDS as a third party where it is installed."""
+        domain = 1 + os.getpid() % 100  # hardly anybody else's; and it does not leave this host
+        limit = self.seconds + GRACE
+        python = cyclone_python()
+        with Programs(f"ros2://{domain}?range=localhost") as programs:
+            cast = {
+                "listener": programs.start(
+                    "coordinate_listener.py", "--count", self.points, "--seconds", limit
+                )
+            }
+            if python is not None:
+                cast["cyclone"] = programs.start_cyclone(python, domain, self.points, limit)
+            self.say(f"\n{ROS2}: {programs.network}")
+            for program in tuple(cast.values()):  # so that what the talker times is discovery
+                program.wait_ready(GRACE)
+            cast["talker"] = programs.start(
+                "coordinate_talker.py", "--count", self.points, "--rate", self.rate,
+                "--subscribers", len(cast), "--settle", SETTLE,
+            )  # fmt: skip
+            self.say(f"processes: {', '.join(program.name for program in programs.all)}")
+            if python is None:
+                self.say(f"{CYCLONE} is not installed: no third party listens")
+            self._watch(ROS2, cast, programs)
+
+    def _watch(self, network: str, cast: dict[str, Program], programs: Programs) -> None:
+        """Show what the programs report, once a second, until they have ended or should have."""
+        live = Live()
+        before: dict[str, int] = {}
+        told = False
+        base = statistics.median(self.floors[network])
+        began = then = time.monotonic()
+        while any(program.running for program in programs.all):
+            time.sleep(0.1)
+            now = time.monotonic()
+            if now - began > self.seconds + GRACE:
+                break
+            if self.quiet or now - then < 1.0:
+                continue
+            figures = {name: program.figures for name, program in cast.items()}
+            if network == ROS2 and not told and "found" in figures["talker"]:
+                told = True
+                self.say(f"discovery: {_discovery(figures)}")
+            counts = _counts(figures)
+            rates = {topic: (count - before.get(topic, 0)) / (now - then) for topic, count in counts.items()}
+            parts = _live_parts(counts, rates, figures["talker"].get("median"), base, now - began)
+            live.show(("\n" if live.in_place else "  ").join(parts))
+            before, then = counts, now
+        self.problems += [
+            f"{network}: {problem}" for program in programs.all if (problem := program.finish(GRACE))
+        ]
+        self.figures[network] = {name: program.figures for name, program in cast.items()}
+
+    def result(self) -> dict[str, Any]:
+        """The summary, and under `problems` what was wrong or missing."""
+        result = judge(self.figures, self.floors, self.folder / "image.png")
+        result["problems"] = self.problems + result["problems"]
+        return result
 
 
-def _watch(
-    cast: dict[str, Program],
-    programs: Programs,
-    arguments: argparse.Namespace,
-    trips: list[float],
-    quiet: bool,
-) -> None:
-    """Show what the programs report, once a second, until they have ended or should have."""
-    live = Live()
-    before: dict[str, int] = {}
-    began = then = time.monotonic()
-    while any(program.running for program in programs.all):
-        time.sleep(0.1)
-        now = time.monotonic()
-        if now - began > arguments.seconds + GRACE:
-            return
-        if quiet or now - then < 1.0:
-            continue
-        figures = {name: program.figures for name, program in cast.items()}
-        counts = {
-            "ping": figures["listener"].get("heard", 0),
-            "pong": figures["talker"].get("returned", 0),
-            "image": figures["viewer"].get("received", 0),
-        }
-        rates = {topic: (count - before.get(topic, 0)) / (now - then) for topic, count in counts.items()}
-        median, base = figures["talker"].get("median"), statistics.median(trips)
-        parts = _live_parts(counts, rates, median, base, now - began)
-        live.show(("\n" if live.in_place else "  ").join(parts))
-        before, then = counts, now
+def _discovery(figures: dict[str, dict[str, Any]]) -> str:
+    talker = figures["talker"]
+    found = talker.get("found")
+    if found is None:
+        return "-"
+    others = "the listener" + (f" and {CYCLONE}" if "cyclone" in figures else "")
+    return f"the talker, from the start of its node, was matched with {others} in {seconds_text(found)}"
+
+
+def _counts(figures: dict[str, dict[str, Any]]) -> dict[str, int]:
+    """Messages received so far, by topic."""
+    counts = {
+        "ping": figures["listener"].get("heard", 0),
+        "pong": figures["talker"].get("returned", 0),
+    }
+    if "viewer" in figures:
+        counts["image"] = figures["viewer"].get("received", 0)
+    if "cyclone" in figures:
+        counts[f"ping at {CYCLONE}"] = figures["cyclone"].get("heard", 0)
+    return counts
 
 
 def _live_parts(
@@ -126,41 +201,38 @@ def _registered(master: Any) -> list[str]:
 
 
 def judge(
-    figures: dict[str, dict[str, Any]], floor_trips: list[float], picture: pathlib.Path
+    figures: dict[str, dict[str, dict[str, Any]]], floors: dict[str, list[float]], picture: pathlib.Path
 ) -> dict[str, Any]:
-    """The summary of what the programs last reported, and under `problems` what was wrong or missing."""
-    talker, listener = figures["talker"], figures["listener"]
-    camera, viewer = figures["camera"], figures["viewer"]
+    """The summary of what the programs of each network last reported, and under `problems` what was wrong or missing."""
     problems: list[str] = []
-    topics = []
-    for topic, kind, sent, received, wrong in (
-        (
-            "/ping",
-            "mros_comm_measure/Coordinate",
-            talker.get("sent"),
-            listener.get("heard"),
-            listener.get("wrong"),
-        ),
-        (
-            "/pong",
-            "mros_comm_measure/Coordinate",
-            listener.get("heard"),
-            talker.get("returned"),
-            talker.get("altered"),
-        ),
-        ("/image", "sensor_msgs/Image", camera.get("sent"), viewer.get("received"), viewer.get("wrong")),
-    ):
+    topics: list[dict[str, Any]] = []
+    round_trips: list[dict[str, Any]] = []
+
+    def exchange(network: str, topic: str, kind: str, sent: Any, received: Any, wrong: Any) -> None:
         right = bool(sent) and sent == received and wrong == 0
         if not right:
-            problems.append(f"{topic}: sent {sent}, received {received}, wrong {wrong}")
-        topics.append(
-            {"topic": topic, "type": kind, "sent": sent, "received": received, "wrong": wrong, "right": right}
-        )
-    trips = sorted(talker.get("round_trips", ()))
-    if not trips:
-        problems.append("no round trip was timed")
-    if not floor_trips:
-        problems.append("no round trip of raw sockets was timed")
+            problems.append(f"{network} {topic}: sent {sent}, received {received}, wrong {wrong}")
+        row = {"network": network, "topic": topic, "type": kind, "sent": sent, "received": received}
+        topics.append({**row, "wrong": wrong, "right": right})
+
+    for network, programs in figures.items():
+        talker, listener = programs.get("talker", {}), programs.get("listener", {})
+        sent, heard = talker.get("sent"), listener.get("heard")
+        exchange(network, "/ping", COORDINATE, sent, heard, listener.get("wrong"))
+        exchange(network, "/pong", COORDINATE, heard, talker.get("returned"), talker.get("altered"))
+        if "cyclone" in programs:
+            other = programs["cyclone"]
+            exchange(network, f"/ping at {CYCLONE}", COORDINATE, sent, other.get("heard"), other.get("wrong"))
+        trips, base = sorted(talker.get("round_trips", ())), sorted(floors[network])
+        if not trips:
+            problems.append(f"{network}: no round trip was timed")
+        if not base:
+            problems.append(f"{network}: no round trip of raw sockets was timed")
+        round_trips.append({"network": network, "roslet": _summary(trips), "floor": _summary(base)})
+    camera, viewer = figures[ROS1].get("camera", {}), figures[ROS1].get("viewer", {})
+    exchange(
+        ROS1, "/image", "sensor_msgs/Image", camera.get("sent"), viewer.get("received"), viewer.get("wrong")
+    )
     try:
         size = png_size(picture.read_bytes())
         if size != (WIDTH, HEIGHT):
@@ -169,8 +241,9 @@ def judge(
         problems.append(f"{picture}: {error}")
     return {
         "topics": topics,
-        "round_trip": _summary(trips),
-        "floor": _summary(sorted(floor_trips)),
+        "round_trips": round_trips,
+        "discovery": figures[ROS2].get("talker", {}).get("found"),
+        "cyclonedds": "cyclone" in figures[ROS2],
         "picture": str(picture),
         "problems": problems,
     }
@@ -216,30 +289,36 @@ def png_size(data: bytes) -> tuple[int, int]:
 def _print(result: dict[str, Any]) -> None:
     print()
     table(
-        ("TOPIC", "TYPE", "SENT", "RECEIVED", "WRONG", "RESULT"),
+        ("NETWORK", "TOPIC", "TYPE", "SENT", "RECEIVED", "WRONG", "RESULT"),
         [
             (
+                row["network"],
                 row["topic"],
                 row["type"],
-                "-" if row["sent"] is None else row["sent"],
-                "-" if row["received"] is None else row["received"],
-                "-" if row["wrong"] is None else row["wrong"],
+                *("-" if row[key] is None else row[key] for key in ("sent", "received", "wrong")),
                 "ok" if row["right"] else "WRONG",
             )
             for row in result["topics"]
         ],
     )
-    trip, base = result["round_trip"], result["floor"]
     print()
-    if trip["count"] and base["count"]:
-        table(
-            ("ROUND TRIP", "COUNT", "MEDIAN", "99 %"),
-            [
-                (name, part["count"], seconds_text(part["median"]), seconds_text(part["p99"]))
-                for name, part in (("roslet", trip), ("raw sockets", base))
-            ],
-        )
-        print(f"roslet takes {trip['median'] / base['median']:.2f} times what raw sockets take")
+    timed = [one for one in result["round_trips"] if one["roslet"]["count"] and one["floor"]["count"]]
+    table(
+        ("ROUND TRIP", "COUNT", "MEDIAN", "99 %", "TO RAW"),
+        [
+            (
+                f"{one['network']} {name}",
+                one[key]["count"],
+                seconds_text(one[key]["median"]),
+                seconds_text(one[key]["p99"]),
+                f"{one[key]['median'] / one['floor']['median']:.2f}",
+            )
+            for one in timed
+            for name, key in (("roslet", "roslet"), ("raw sockets", "floor"))
+        ],
+    )
+    if not result["cyclonedds"]:
+        print(f"{CYCLONE} is not installed and took no part")
     print(f"picture: {result['picture']}")
     print()
     for problem in result["problems"]:

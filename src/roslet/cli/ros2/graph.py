@@ -48,6 +48,7 @@ class Ros2Graph(Graph):
         self.network = self.node.network
         self._seen = -1
         self._endpoints: list[EndpointInfo] = []
+        self._by_channel: dict[tuple[str, bool], dict[str, list[EndpointInfo]]] = {}
         try:
             self.settle()
         except BaseException:
@@ -66,7 +67,7 @@ class Ros2Graph(Graph):
         """Let the loop run, without callbacks."""
         self.node.reactor.run_until(lambda: self.node.is_shutdown, seconds, user=False)
 
-    def settle(self, least: float = LEAST) -> None:
+    def settle(self) -> None:
         """Wait until discovery has told all that it is going to tell; see the constants."""
         graph = self.net.graph
         begin = quiet_since = time.monotonic()
@@ -78,7 +79,7 @@ class Ros2Graph(Graph):
                 revision, quiet_since = graph.revision, now
             with self.node.reactor.lock:
                 complete = graph.complete()
-            settled = complete and now - quiet_since >= QUIET and now - begin >= least
+            settled = complete and now - quiet_since >= QUIET and now - begin >= LEAST
             if settled or now - begin >= MOST:
                 return
 
@@ -93,6 +94,7 @@ class Ros2Graph(Graph):
                 self._endpoints = [
                     one for one in graph.endpoints(channel=None) if (one.node_name, one.node_namespace) != own
                 ]
+                self._by_channel.clear()
                 self._seen = graph.revision
             return self._endpoints
 
@@ -104,10 +106,13 @@ class Ros2Graph(Graph):
 
     def of(self, channel: str, writers: bool) -> dict[str, list[EndpointInfo]]:
         """The endpoints of a channel and direction, by topic or service."""
-        found: dict[str, list[EndpointInfo]] = {}
-        for one in self.endpoints():
-            if one.channel == channel and (one.kind == PUBLISHER) == writers:
-                found.setdefault(one.name, []).append(one)
+        endpoints = self.endpoints()
+        found = self._by_channel.get((channel, writers))
+        if found is None:
+            found = self._by_channel[channel, writers] = {}
+            for one in endpoints:
+                if one.channel == channel and (one.kind == PUBLISHER) == writers:
+                    found.setdefault(one.name, []).append(one)
         return found
 
     @property

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import socket
 import struct
+import sys
 import time
 from typing import TYPE_CHECKING
 
@@ -40,7 +41,8 @@ def hears_itself(number: int, address: str) -> str:
     ):
         try:
             ear.bind(("", 0))
-            if hasattr(socket, "SO_REUSEPORT") and os.name == "posix":
+            if sys.platform == "linux":
+                # Otherwise Linux hands over what comes by other interfaces, which other sockets have joined.
                 ear.setsockopt(socket.IPPROTO_IP, _IP_MULTICAST_ALL, 0)
             ear.setsockopt(
                 socket.IPPROTO_IP,
@@ -92,8 +94,7 @@ class Listener:
                 if one.multicast:
                     self._join(one)
         except OSError:
-            self._socket.close()
-            self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM | socket.SOCK_NONBLOCK)
+            self._socket.close()  # somebody does not share the port; then nobody is heard
 
     def _join(self, one: Interface) -> None:
         try:

@@ -46,7 +46,8 @@ class NodeParameters(ParameterStore):
         """(node, name within it; "" for all of it)."""
         if node:
             return full_name(node), name.removeprefix("~/")
-        full = full_name(name)
+        # Names of parameters have dots, which names of the graph have not.
+        full = name if name.startswith("/") else "/" + name
         found = ""
         for one in self._graph.nodes():
             if (full == one or full.startswith(one + "/")) and len(one) > len(found):
@@ -109,11 +110,12 @@ class NodeParameters(ParameterStore):
         values = value if not name and isinstance(value, dict) else {name: value}
         self._set(node, values)
 
-    def _set(self, node: str, values: dict[str, Any]) -> None:
-        """Each on its own, as `ros2 param load` does: one that is refused keeps no other from being set."""
+    def _set(self, node: str, values: dict[str, Any], new_only: bool = False) -> None:
+        """Each on its own, as `ros2 param load` does: one that is refused keeps no other from being set. With `new_only`
+        those that have the value already are left alone: they may be read-only."""
         present = self._values_of(node, list(values)) if values else {}
         made = [_parameter(name, value, present.get(name)) for name, value in values.items()]
-        refused = self._change(node, made)
+        refused = self._change(node, [one for one in made if not new_only or one != present.get(one.name)])
         if refused:
             raise CommandError(f"{node} refuses: {'; '.join(refused)}")
 
@@ -167,7 +169,7 @@ class NodeParameters(ParameterStore):
         only = "" if where in ("", "/") else full_name(where)
         sections = list(_sections(value, ""))
         if not sections and only:
-            self._set(only, flat(value))
+            self._set(only, flat(value), new_only=True)
             return
         done = 0
         for node in [only] if only else self._graph.nodes():
@@ -175,7 +177,7 @@ class NodeParameters(ParameterStore):
                 if concerns(pattern, node.rpartition("/")[2], node) and (
                     only or not self._graph.hidden(node)
                 ):
-                    self._set(node, flat(parameters))
+                    self._set(node, flat(parameters), new_only=True)
                     done += 1
         if not done:
             patterns = ", ".join(pattern for pattern, _ in sections) or f"nobody: there is no {KEY}"

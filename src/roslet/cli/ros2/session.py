@@ -9,7 +9,6 @@ from roslet.cli.ros2.graph import Ros2Graph
 from roslet.cli.ros2.reader import Ros2Reader
 from roslet.cli.session import Session, Tap, qos_fields
 from roslet.engine.rtps.qos import incompatible
-from roslet.errors import NodeClosed
 from roslet.names import TOPIC
 from roslet.node.qos import QoS
 from roslet.node.ros2.qos import to_dds
@@ -108,8 +107,6 @@ class Ros2Session(Session):
         return Ros2Reader(self.graph)
 
     def expected(self, publisher: Publisher) -> int:
-        if self.node.is_shutdown:
-            raise NodeClosed(f"{self.node.name} is closed")
         offered = to_dds(publisher.qos)
         there = self.graph.of(TOPIC, False).get(publisher.topic, ())
         return len(

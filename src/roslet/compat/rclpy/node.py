@@ -140,11 +140,12 @@ class Node(ParametersOfNode, GraphOfNode):
         self._inner.clock_of = self._clock
         if enable_rosout and self._network.arguments.switches.get("rosout-logs", True):
             self._log_to_rosout(self._validate_qos(rosout_qos_profile))
-        self._network.parameters._events = self.create_publisher(
+        events = self.create_publisher(
             message_class("rcl_interfaces/msg/ParameterEvent"),
             "/parameter_events",
             qos_profile_parameter_events,
         )
+        self._network.parameters._events = events._endpoint
         if automatically_declare_parameters_from_overrides:
             describe = message_class("rcl_interfaces/msg/ParameterDescriptor")
             self.declare_parameters(

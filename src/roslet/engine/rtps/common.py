@@ -16,9 +16,15 @@ def _ignore(event: object) -> None:
     """Events that nobody wants."""
 
 
+def _anywhere(host: str) -> bool:
+    """Where our own addresses are not known, all peers are taken for near."""
+    return True
+
+
 class Common:
     """`header` of our messages; `outbox` of what goes out; `counters` of what was dropped; `deliver` takes events;
-    `assembling` and `holding` are the octets of samples that are not whole, and that came too early."""
+    `here` tells whether an address is of this host; `assembling` and `holding` are the octets of samples that are not
+    whole, and that came too early."""
 
     def __init__(
         self,
@@ -35,6 +41,7 @@ class Common:
         self.limits = limits
         self.epoch = epoch
         self.deliver = deliver
+        self.here: Callable[[str], bool] = _anywhere
         self.schedule = Schedule()
         self.assembling = Budget(limits.assembly_bytes, limits.peer_bytes)
         self.holding = Budget(limits.all_held_bytes, limits.peer_bytes)
@@ -42,6 +49,7 @@ class Common:
     def quiet(self) -> "Common":
         """The same without events, for the builtin endpoints: nobody waits for theirs."""
         twin = Common(self.header, self.outbox, self.counters, self.limits, self.epoch, _ignore)
+        twin.here = self.here
         twin.schedule = self.schedule
         twin.assembling = self.assembling
         twin.holding = self.holding

@@ -22,17 +22,24 @@ class Budget:
         if size > self.left or taken > self.share:
             return False
         self.left -= size
-        self._taken[prefix] = taken
+        if taken:
+            self._taken[prefix] = taken
         return True
 
     def give(self, prefix: bytes, size: int) -> None:
         """Back."""
         self.left += size
-        taken = self._taken[prefix] - size
+        taken = self._taken.get(prefix, 0) - size
         if taken:
             self._taken[prefix] = taken
         else:
-            del self._taken[prefix]
+            # Samples of no octets may have left nothing here.
+            self._taken.pop(prefix, None)
+
+
+def cost(size: int, fragment_size: int) -> int:
+    """Octets that an Assembly of such a sample takes: the sample, and one for each fragment."""
+    return size + (size + fragment_size - 1) // fragment_size
 
 
 class Assembly:

@@ -20,9 +20,9 @@ class HistoryFull(RosletError):
 
 class Change:
     """One sample, or the end of an instance: `flags` as in DATA; `key` tells instances apart; `to`: the one reader
-    that it is for, or nothing."""
+    that it is for, or nothing; `fragment`: octets of a part of it, where it is longer than that."""
 
-    __slots__ = ("expires", "flags", "inline_qos", "key", "payload", "sequence", "time", "to")
+    __slots__ = ("expires", "flags", "fragment", "inline_qos", "key", "payload", "sequence", "time", "to")
 
     def __init__(
         self,
@@ -33,6 +33,7 @@ class Change:
         time: int,
         key: bytes,
         to: bytes = b"",
+        fragment: int = 0,
     ) -> None:
         self.sequence = sequence
         self.payload = payload
@@ -41,6 +42,7 @@ class Change:
         self.time = time
         self.key = key
         self.to = to
+        self.fragment = fragment
         self.expires = 0.0  # when LIFESPAN ends it, where the writer has one
 
 

@@ -19,6 +19,8 @@ class Limits(Record):
                    that one that is up to no good, or out of its depth, leaves room for the others
     history_bytes  octets of samples that one of our writers keeps for its readers; KEEP_LAST then drops the oldest
     backlog_bytes  octets that one of our KEEP_ALL writers keeps for readers that have yet to acknowledge them
+    discovery_bytes, discovery_share   octets of the announcements of remote endpoints, over all participants and of one: an
+                   announcement has some 400, but user data of 64 KiB is legal
     instances      instances of a keyed topic that one reader or writer knows at once
     """
 
@@ -36,6 +38,8 @@ class Limits(Record):
         "history_bytes",
         "backlog_bytes",
         "instances",
+        "discovery_bytes",
+        "discovery_share",
     )
     __slots__ = _fields
 
@@ -54,6 +58,8 @@ class Limits(Record):
         history_bytes: int = 256 << 20,
         backlog_bytes: int = 32 << 20,
         instances: int = 4096,
+        discovery_bytes: int = 64 << 20,
+        discovery_share: int = 4 << 20,
     ) -> None:
         self.participants = participants
         self.endpoints = endpoints
@@ -68,3 +74,5 @@ class Limits(Record):
         self.history_bytes = history_bytes
         self.backlog_bytes = backlog_bytes
         self.instances = instances
+        self.discovery_bytes = discovery_bytes
+        self.discovery_share = discovery_share

@@ -4,6 +4,7 @@ Indexed by participant and by writer, so that what one peer does costs in propor
 """
 
 from roslet.engine.rtps import events
+from roslet.engine.rtps.fragments import Budget
 from roslet.engine.rtps.qos import incompatible
 from roslet.engine.rtps.reach import addresses_of
 from roslet.errors import ProtocolError
@@ -46,6 +47,8 @@ class Matching:
         self.readers: dict[bytes, Reader] = {}
         self.endpoints: dict[bytes, EndpointData] = {}
         self.routes: dict[bytes, list[tuple[Reader, WriterProxy]]] = {}
+        self._sizes: dict[bytes, int] = {}  # octets of the announcements, by GUID
+        self._budget = Budget(limits.discovery_bytes, limits.discovery_share)
         self._of: dict[bytes, dict[bytes, EndpointData]] = {}  # by participant
         self._guid_prefix = guid_prefix
         self._remotes = remotes
@@ -139,9 +142,22 @@ class Matching:
         known = self._of.setdefault(prefix, {})
         if found.guid not in known and len(known) >= self._limits.endpoints:
             raise ProtocolError("endpoints-full")
+        self._account(found.guid, len(value.payload))
         known[found.guid] = self.endpoints[found.guid] = found
         self._deliver(events.EndpointDiscovered(found))
         self._discovered(found, now)
+
+    def _account(self, endpoint: bytes, size: int) -> None:
+        """This announcement takes the place of the one before. Raises ProtocolError where it is too much."""
+        prefix, before = endpoint[:12], self._sizes.get(endpoint)
+        if before is not None:
+            self._budget.give(prefix, before)
+        if self._budget.take(prefix, size):
+            self._sizes[endpoint] = size
+            return
+        if before is not None:
+            self._budget.take(prefix, before)
+        raise ProtocolError("discovery-bytes-full")
 
     def _discovered(self, found: "EndpointData", now: float) -> None:
         if found.writer:
@@ -155,6 +171,7 @@ class Matching:
         found = self.endpoints.pop(lost, None)
         if found is None:
             return
+        self._budget.give(lost[:12], self._sizes.pop(lost))
         known = self._of[lost[:12]]
         del known[lost]
         if not known:

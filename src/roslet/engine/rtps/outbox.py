@@ -93,12 +93,26 @@ class Flow:
             self.waiting.append(datagrams)
         self._outbox.activate(self)
 
-    def take(self, now: float, found: "list[Datagram]") -> None:
-        """Add what may be sent now."""
+    def spare(self, size: int, now: float) -> bool:
+        """Whether this much may go at once, past the flow: so little is under way that nobody need say when it is there."""
+        if self.waiting or self.repairs:
+            return False
+        self._settle(now)
+        if self._under_way + size > self.window // 4:
+            return False
+        self._under_way += size
+        return True
+
+    def _settle(self, now: float) -> None:
+        """Some has arrived meanwhile."""
         if now > self._at:
             pace = SLOW_PACE if self._marks else PACE
             self._under_way = max(0.0, self._under_way - (now - self._at) * pace)
             self._at = now
+
+    def take(self, now: float, found: "list[Datagram]") -> None:
+        """Add what may be sent now."""
+        self._settle(now)
         room = self.window - self._under_way
         sent = 0
         while sent < room:

@@ -16,7 +16,7 @@ from roslet.engine.rtps.receiver import Receiver
 from roslet.engine.rtps.schedule import Alarm
 from roslet.engine.rtps.sedp import Sedp
 from roslet.engine.rtps.spdp import RemoteParticipant, Spdp
-from roslet.engine.rtps.writer import FRAGMENT_SIZE, Writer
+from roslet.engine.rtps.writer import FAR_FRAGMENT_SIZE, FRAGMENT_SIZE, Writer
 from roslet.errors import ProtocolError
 from roslet.wire.rtps import guid, header, participant_data, participant_message
 from roslet.wire.rtps.endpoint_data import EndpointData
@@ -56,6 +56,7 @@ class Participant:
     epoch           nanoseconds of the Unix epoch when `now` is 0
     multicast       the group's locator where we listen to it
     networks        our interfaces' addresses and the length of their networks' prefixes; empty where they are not known
+    fragment_size, far_fragment_size   octets of a part of a large sample; the latter where a reader is on another host
     """
 
     def __init__(
@@ -75,6 +76,7 @@ class Participant:
         limits: "Limits | None" = None,
         multicast: "tuple[Locator, ...]" = (),
         networks: "tuple[Network, ...]" = (),
+        far_fragment_size: int = FAR_FRAGMENT_SIZE,
     ) -> None:
         if len(guid_prefix) != 12:
             raise ValueError("a GUID prefix has 12 octets, not %d" % len(guid_prefix))
@@ -83,6 +85,7 @@ class Participant:
         self.counters: dict[str, int] = {}
         self.outbox = Outbox()
         self._fragment_size = fragment_size
+        self._far_fragment_size = far_fragment_size
         self._events: list[Any] = []
         self._serial = 0
         self._closed = False
@@ -99,6 +102,8 @@ class Participant:
         self._common = Common(
             header.own(self.guid_prefix), self.outbox, self.counters, self.limits, epoch, self._deliver
         )
+        self._networks = networks
+        self._common.here = self._is_here
         self._count = self._common.count
         self._schedule = self._common.schedule
         self._budget = self._common.assembling
@@ -194,8 +199,16 @@ class Participant:
     ) -> None:
         """Our interfaces have changed: from now on the locators of `own` hold, announcements go `to` these addresses, and
         peers are told. `own` is `spdp.own` with some of its locators replaced."""
+        self._networks = networks
+        for writer in self.writers.values():
+            writer.moved()
         self._matching.move(addresses_of(own.default_unicast, "")[:1], networks, now)
         self.spdp.move(own, to, networks, now)
+
+    def _is_here(self, host: str) -> bool:
+        if not self._networks or host.startswith("127."):
+            return True
+        return host in [address for address, _ in self._networks]
 
     def close(self, now: float) -> None:
         """Depart: the datagrams that say so are the last ones to send."""
@@ -220,7 +233,7 @@ class Participant:
         endpoint = self._endpoint(topic, type_name, qos, b"\x02" if keyed else b"\x03", unicast)
         kind, lease = qos.liveliness
         wrote = self._wrote if kind == MANUAL_BY_PARTICIPANT and lease < INFINITE else None
-        writer = Writer(endpoint, self._common, self._fragment_size, wrote)
+        writer = Writer(endpoint, self._common, self._fragment_size, self._far_fragment_size, wrote)
         writer.accepts = accepts
         self._all_writers[writer.entity_id] = writer
         self.sedp.announce(endpoint, now)

@@ -5,7 +5,7 @@ best-effort one what comes, never backwards.
 """
 
 from roslet.engine.rtps.events import DeadlineMissed, SampleReceived, SampleRejected, SamplesLost
-from roslet.engine.rtps.fragments import Assembly
+from roslet.engine.rtps.fragments import Assembly, cost
 from roslet.engine.rtps.instances import Instances
 from roslet.engine.rtps.schedule import Alarm
 from roslet.wire.rtps import guid as guids
@@ -191,7 +191,7 @@ class Reader:
         """A DATA of a matched writer."""
         sequence = value.sequence
         if self._period is not None:
-            self.note_deadline(now)
+            self.note_sample(now)
         if sequence == proxy.next and (proxy.synced or not proxy.reliable or sequence == 1):
             # The ordinary case first. There is nothing before the first sample, whatever the writer has told us.
             if proxy.plain and self.sink is not None:
@@ -319,7 +319,7 @@ class Reader:
 
     # -- DEADLINE
 
-    def note_deadline(self, now: float) -> None:
+    def note_sample(self, now: float) -> None:
         """A sample came: of a topic without a key it is due again a period from now."""
         if self.instances is None and self._period is not None:
             self._miss_at = now + self._period
@@ -358,7 +358,9 @@ class Reader:
                 if proxy.reliable and sequence > latest:
                     return
                 self._drop_assembly(proxy, latest if proxy.reliable else min(proxy.assemblies))
-            if not self._common.assembling.take(proxy.guid[:12], value.sample_size):
+            if not self._common.assembling.take(
+                proxy.guid[:12], cost(value.sample_size, value.fragment_size)
+            ):
                 self._count("assembly-bytes-full")
                 return
             assembly = proxy.assemblies[sequence] = Assembly(value, time)
@@ -375,7 +377,7 @@ class Reader:
     def _drop_assembly(self, proxy: WriterProxy, sequence: int) -> None:
         assembly = proxy.assemblies.pop(sequence, None)
         if assembly is not None:
-            self._common.assembling.give(proxy.guid[:12], assembly.size)
+            self._common.assembling.give(proxy.guid[:12], cost(assembly.size, assembly.fragment_size))
 
     # -- what writers say
 

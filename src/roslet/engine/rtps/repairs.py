@@ -67,7 +67,7 @@ class Repairs:
         repair: bool = False,
     ) -> None:
         self._paced[change.sequence] = self._paced.get(change.sequence, 0) + 1
-        make = self._fragments if len(change.payload) > self._writer.fragment_size else self._whole
+        make = self._fragments if len(change.payload) > change.fragment else self._whole
         self._flow.add(make(change, proxy, numbers, addresses), repair)
 
     def _front(self, change: "Change", proxy: "ReaderProxy | None") -> "tuple[bytes, bytes]":
@@ -105,7 +105,7 @@ class Repairs:
         numbers: "list[int] | None",
         addresses: "tuple[Address, ...]",
     ) -> "Iterator[Bulk]":
-        size = self._writer.fragment_size
+        size = change.fragment
         total = len(change.payload)
         count = (total + size - 1) // size
         view = memoryview(change.payload)

@@ -42,7 +42,10 @@ HEARTBEAT_LONGEST = 0.25
 BULK_DELAY = 0.005
 # Octets of sample in one datagram: below the limit of UDP over IPv4 with room for the submessages before it.
 FRAGMENT_SIZE = 65000
-# Samples from this size on go within the window of the writer's flow; smaller ones never wait.
+# The same where a reader is on another host: what Ethernet takes in one frame. Of a larger datagram a lost frame loses all,
+# and Linux keeps the rest for 30 s, until 4 MiB of those are full and nothing large gets through.
+FAR_FRAGMENT_SIZE = 1400
+# Samples from this size on go within the window of the writer's flow, unless little is under way; smaller ones never wait.
 BULK = 8192
 # Octets that a small datagram takes of a socket's buffer, besides twice its size, on Linux.
 OVERHEAD = 768
@@ -58,6 +61,7 @@ class Writer:
         endpoint: "EndpointData",
         common: "Common",
         fragment_size: int = FRAGMENT_SIZE,
+        far_fragment_size: int = FAR_FRAGMENT_SIZE,
         wrote: "Callable[[float], None] | None" = None,
     ) -> None:
         limits = common.limits
@@ -76,7 +80,8 @@ class Writer:
         self.proxies: dict[bytes, ReaderProxy] = {}
         self.last = 0
         self.accepts: Callable[[EndpointData], bool] | None = None  # which readers are matched, where not all
-        self.fragment_size = fragment_size
+        self.fragment_size = self._near_size = fragment_size
+        self._far_size = min(far_fragment_size, fragment_size)
         self._common = common
         self._outbox = common.outbox
         self._wrote = wrote  # told of each sample, where liveliness depends on it
@@ -161,18 +166,19 @@ class Writer:
         sequence = self.last + 1
         size = len(payload)
         kept = self.keeps or self._any_reliable
-        bulk = self.is_bulk(payload)
+        bulk = size >= BULK and (
+            size > self.fragment_size or to != b"" or not self._flow.spare(size * len(self.addresses), now)
+        )
         change: Change | None = None
         if kept or bulk or to:
             if self._lifespan is not None:
                 self.history.forget_expired(now)
             payload = bytes(payload)
-            change = Change(sequence, payload, inline_qos, flags, time, key or to, to)
+            change = Change(sequence, payload, inline_qos, flags, time, key or to, to, self.fragment_size)
             if self._lifespan is not None:
                 change.expires = now + self._lifespan
             if kept:
-                if self._wanted is False and self.history.full(size, change.key):
-                    self._wanted = True
+                self._wanted = self._wanted or self.history.full(size, change.key)
                 self.history.add(change)
         if self._strangers:
             self._greet(sequence)
@@ -214,7 +220,7 @@ class Writer:
         wire_flags = flags | FLAG_E | (FLAG_Q if inline_qos else 0)
         pad = beat = b""
         if self._any_reliable:
-            self._since_heartbeat += 1
+            self._since_heartbeat += 1 + size // BULK
             if self._since_heartbeat >= PIGGYBACK:
                 self._since_heartbeat = 0
                 pad = bytes(-size & 3)
@@ -308,6 +314,10 @@ class Writer:
                 self._strangers = True
                 self._repairs.introduce(proxy)
 
+    def moved(self) -> None:
+        """Our host's addresses have changed."""
+        self._stale = True
+
     def unmatch(self, guid: bytes, now: float = 0.0) -> "ReaderProxy | None":
         """Forget a reader."""
         proxy = self.proxies.pop(guid, None)
@@ -320,6 +330,9 @@ class Writer:
         self._stale = False
         proxies = list(self.proxies.values())
         self._addresses = addresses_for_all(proxies)
+        here = self._common.here
+        near = not [host for host, _ in self._addresses if not here(host)]
+        self.fragment_size = self._near_size if near else self._far_size
         reliable = [one for one in proxies if one.reliable]
         self._any_reliable = bool(reliable)
         self._tells = self._any_reliable and not [one for one in reliable if one.vendor != VENDORID_ROSLET]
@@ -389,7 +402,8 @@ class Writer:
         behind = [one for one in self.proxies.values() if one.reliable and one.acked < self.last]
         if not behind:
             return
-        if self._directed or len(behind) == 1:
+        if self._directed or len(behind) == 1 or 2 * len(behind) <= len(self.addresses):
+            # Whoever has everything would answer too.
             for one in behind:
                 if self._directed:
                     self._repairs.tell_skipped(one.guid, self.last)

@@ -123,20 +123,22 @@ class Ros1Client(Client):
 
         return done
 
+    def ready(self) -> bool:
+        try:
+            return self.node.lookup_service(self.name) is not None
+        except (Unreachable, CallTimeout):
+            return False  # the master may come
+
     def wait(self, timeout: float | None = None) -> bool:
         node = self.node
         end = None if timeout is None else node.reactor.now() + timeout
-        while True:
-            try:
-                if node.lookup_service(self.name) is not None:
-                    return True
-            except (Unreachable, CallTimeout):
-                pass  # the master may come
+        while not self.ready():
             left = LOOK_AGAIN if end is None else min(LOOK_AGAIN, end - node.reactor.now())
             if left <= 0:
                 return False
             if node.reactor.run_until(lambda: node.is_shutdown, left, user=False):
                 return False
+        return True
 
     def close(self) -> None:
         self.closed = True

@@ -21,6 +21,7 @@ from roslet.engine.ros2.actions import (
     cancel_code,
 )
 from roslet.errors import CallTimeout, NodeClosed, RosletError
+from roslet.node.convert import message_of
 from roslet.node.future import Future
 from roslet.node.qos import QoS
 
@@ -232,11 +233,7 @@ class ActionServer:
     def _made(kind: Any, message: Any, fields: dict[str, Any]) -> Any:
         if message is None:
             return kind(**fields)
-        if isinstance(message, dict):
-            return kind(**message)
-        if not isinstance(message, kind):
-            raise TypeError(f"expected {kind.__name__}, not {type(message).__name__}")
-        return message
+        return message_of(kind, message, "expected")
 
     def _publish_status(self) -> None:
         message: Any = self._status.type()
@@ -425,7 +422,9 @@ class ActionClient:
                 answer.set_exception(future.exception() or RosletError(self.name))
                 return
             response = future.result(0)
-            self._goals.result(goal.uuid, response.status)
+            goal.status = response.status
+            # Feedback that came before the result may still wait for spin to deliver it.
+            self._network.reactor.call_soon(lambda: self._goals.forget(goal.uuid), user=True)
             answer.set_result((STATES[response.status], response.result))
 
         self._get_result.call_async(request).add_done_callback(answered)

@@ -10,6 +10,7 @@ import time
 from roslet.engine.ros2.actions import RESULT_TIMEOUT
 from roslet.errors import InvalidName, Unsupported
 from roslet.names import REQUEST, TOPIC, Ros2Arguments, dds_topic, dds_type, parse_ros2_network, resolve_ros2
+from roslet.node.log import LEVEL_NAMES
 from roslet.node.network import Network, own_classes
 from roslet.node.ros2 import descriptions
 from roslet.node.ros2 import qos as presets
@@ -102,12 +103,27 @@ class Ros2Network(Network):
 
     def begin(self) -> None:
         overrides = overrides_of(self.arguments.overrides, self.base_name, self.name)
+        self._begin_log()
         if self.node._seen and self.arguments.switches.get("rosout-logs", True):
             self.node.log._publisher = self.publisher("/rosout", "rcl_interfaces/msg/Log", presets.ROSOUT)
         self.parameters = NodeParameters(self, overrides)
         described = self.parameters.declare("start_type_description_service", True, read_only=True)
         if described and self.node._seen:
             descriptions.offer(self)
+
+    def _begin_log(self) -> None:
+        """What `--log-level` and `--disable-stdout-logs` say."""
+        log, arguments = self.node.log, self.arguments
+        named = arguments.log_levels.get(self.logger, arguments.log_levels.get("", "info")).lower()
+        if named not in LEVEL_NAMES:
+            raise InvalidName(f"--log-level {named}: expected one of {', '.join(LEVEL_NAMES)}")
+        log.level = LEVEL_NAMES[named]
+        log.quiet = not arguments.switches.get("stdout-logs", True)
+
+    @property
+    def logger(self) -> str:
+        """The name of the node's logger."""
+        return self.name[1:].replace("/", ".")
 
     def say_goodbye(self) -> None:
         waiting = [one for one in self._publishers if one._writer is not None and one._writer.proxies]
@@ -168,7 +184,7 @@ class Ros2Network(Network):
         stamp = self.node.now()
         entry.stamp.sec, entry.stamp.nanosec = stamp.secs, stamp.nsecs
         entry.level = _LEVELS[level]
-        entry.name = self.name[1:].replace("/", ".")
+        entry.name = self.logger
         entry.msg = text
 
     @property

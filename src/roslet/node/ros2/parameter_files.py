@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from roslet.errors import InvalidName, Unsupported
-from roslet.node.values import parse_value
+from roslet.node.values import load_yaml, parse_value
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -61,8 +61,8 @@ def read_file(path: str) -> list[tuple[str, dict[str, Any]]]:
     if len(text) > MAX_FILE:
         raise InvalidName(f"{path}: a parameter file of more than {MAX_FILE} characters")
     try:
-        content = yaml.safe_load(text)
-    except yaml.YAMLError as error:
+        content = load_yaml(yaml, text)
+    except ValueError as error:
         raise InvalidName(f"{path}: {error}") from None
     found = []
     for pattern, inner in _sections(content, "", path, 0):

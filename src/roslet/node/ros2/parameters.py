@@ -203,7 +203,8 @@ class NodeParameters:
         self._changed(Change([], [], [Parameter(parameter.name)]))
 
     def _changed(self, change: Change) -> None:
-        if self._events is not None and not self._network.node.is_shutdown:
+        # For nobody, the messages' classes need not be made: that would be much of a node's start.
+        if self._events is not None and self._events.subscriber_count:
             self._events.publish(self._event(change))
         for one in change.new + change.changed + change.deleted:
             if one.name == USE_SIM_TIME:

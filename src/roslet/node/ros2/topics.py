@@ -32,6 +32,10 @@ if TYPE_CHECKING:
     from roslet.wire.rtps.data import Data
     from roslet.wire.rtps.endpoint_data import EndpointData
 
+# A sample that is longer has come in fragments, and is in memory of its own; others lie in the datagram's buffer.
+DATAGRAM = 65536
+# Seconds that a message without a lifespan is good for.
+FOREVER = float("inf")
 # Bytes that a publisher's own buffer grows to; a larger message is gathered into a buffer of its own, which the writer
 # keeps without a further copy.
 MAX_BUFFER = 60_000
@@ -66,6 +70,7 @@ class _Endpoint:
     _network: Ros2Network
     _listeners: list[Callable[[events.Event], object]]
     _early: deque[events.Event]
+    _before: deque[str]
     _on_connect: list[Callable[[str], None]]
     _on_disconnect: list[Callable[[str], None]]
 
@@ -92,8 +97,17 @@ class _Endpoint:
 
     def _matched(self, peer: str, gid: bytes, matched: bool) -> None:
         self._tell((events.Matched if matched else events.Unmatched)(peer, gid))
+        if matched and not self._on_connect:
+            self._before.append(peer)
         for function in self._on_connect if matched else self._on_disconnect:
             self.node._call_back(function, peer)
+
+    def on_connect(self, function: Callable[[str], None]) -> None:
+        """Call `function(name of the peer's node)` inside spin when a peer is matched; the first function is also called for
+        those that were there before it."""
+        self._on_connect.append(function)
+        while self._before:
+            self.node._call_back(function, self._before.popleft())
 
     def _incompatible(self, peer: str, gid: bytes, policies: tuple[str, ...], offers: bool) -> None:
         what = "requests more than this publisher offers" if offers else "offers less than is requested here"
@@ -121,7 +135,10 @@ class _Endpoint:
 
 
 class Ros2Publisher(_Endpoint, Publisher):
-    """A publisher of one topic; a node may have several of the same."""
+    """A publisher of one topic; a node may have several of the same.
+
+    A message that only subscriptions of this process get is copied, not serialised, and so its values are not checked.
+    """
 
     def __init__(
         self, network: Ros2Network, node: Node, topic: str, message_type: type[Message], qos: QoS
@@ -130,12 +147,17 @@ class Ros2Publisher(_Endpoint, Publisher):
         self._network = network
         self._listeners = []
         self._early = deque(maxlen=MAX_EARLY)
+        self._before = deque(maxlen=MAX_EARLY)
         self._dropped = 0
         self._policies = to_dds(qos)
         # For local subscriptions that come late.
-        self._kept: deque[Message] | None = deque(maxlen=qos.depth if not self._wait else MAX_KEPT)
+        self._kept: deque[tuple[Message, float]] | None = deque(
+            maxlen=qos.depth if not self._wait else MAX_KEPT
+        )
         if not self._latch:
             self._kept = None
+        # Whether a message that nobody outside gets need not be known to the writer: it counts for deadline and liveliness.
+        self._here = not self._latch and qos.deadline is None and qos.liveliness == "automatic"
         self._shell = network.shell
         self._writer: Writer | None = network.create_writer(self)
 
@@ -167,6 +189,10 @@ class Ros2Publisher(_Endpoint, Publisher):
             message = self.type(**fields)
         elif fields or message.__class__ is not self.type:
             message = self._converted(message, fields)
+        if self._here and self._local and not writer.proxies:
+            self.messages += 1
+            self._deliver_locally(message)
+            return
         with self._lock:
             try:
                 payload: Any = self._view[: message.serialize_into(self._view, 0)]
@@ -218,15 +244,15 @@ class Ros2Publisher(_Endpoint, Publisher):
     # -- within this process
 
     def _deliver_locally(self, message: Message) -> None:
-        if self._local:
-            link = self._local_link()
-            subscription: Any
-            for subscription in self._local:
-                subscription._deliver_later(self._for_local(subscription, message), link)
-                if subscription.qos.deadline is not None:
-                    subscription._came_in_time()
+        for subscription in self._local:
+            self._deliver_to(subscription, message)
         if self._kept is not None:
-            self._kept.append(message.copy())
+            self._kept.append((message.copy(), monotonic() + (self.qos.lifespan or FOREVER)))
+
+    def _deliver_to(self, subscription: Subscription, message: Message) -> None:
+        if isinstance(subscription, Ros2Subscription):
+            subscription._note_sample()
+        subscription._deliver_later(self._for_local(subscription, message), self._local_link())
 
     def _local_link(self) -> Any:
         """What a subscription of this process is told of where a message came from."""
@@ -242,8 +268,10 @@ class Ros2Publisher(_Endpoint, Publisher):
     def _attach(self, subscription: Subscription) -> None:
         super()._attach(subscription)
         if self._kept is not None and subscription.qos.durability == "transient_local":
-            for message in self._kept:
-                subscription._deliver_later(self._for_local(subscription, message), None)
+            now = monotonic()
+            for message, until in self._kept:
+                if now < until:
+                    self._deliver_to(subscription, message)
 
     @staticmethod
     def _for_local(subscription: Subscription, message: Message) -> Any:
@@ -277,6 +305,7 @@ class Ros2Subscription(_Endpoint, Subscription):
         self._network = network
         self._listeners = []
         self._early = deque(maxlen=MAX_EARLY)
+        self._before = deque(maxlen=MAX_EARLY)
         self._policies = to_dds(qos)
         self._max_message = max_message
         self._background = False
@@ -299,11 +328,18 @@ class Ros2Subscription(_Endpoint, Subscription):
         if size > self._max_message:
             self.node._count("message-too-large")
             return
-        if size <= MAX_BUFFER:
+        if size <= DATAGRAM:
             payload = bytearray(payload)  # the datagram's buffer is not ours
         elif size > LARGE:
             keep_large_blocks()
         self._deliver_later(payload, (proxy.guid, value.sequence, time, self._network.now()))
+
+    def _note_sample(self) -> None:
+        """A message of this process has come: for the deadline, which the reader keeps."""
+        if self.qos.deadline is not None and self._reader is not None:
+            with self._network.reactor.lock:
+                self._reader.note_sample(self._network.reactor.now())
+                self._network.shell.flush()
 
     def in_loop(self, callback: Callable[[Any], object]) -> None:
         """Call `callback` in the loop whoever runs it, with the reactor's lock held: it must be quick and of ours."""
@@ -317,7 +353,7 @@ class Ros2Subscription(_Endpoint, Subscription):
             super()._deliver_later(message, link)
 
     def _deliver(self, message: Any, link: Any) -> None:
-        if link is not None:
+        if type(link) is tuple:  # from the network, not yet deserialised
             view = memoryview(message)
             gid, sequence, sent, received = link
             if self.type is None:
@@ -332,14 +368,6 @@ class Ros2Subscription(_Endpoint, Subscription):
                     return
             link = MessageInfo(sent, received, gid, sequence) if self._with_link else None
         super()._deliver(message, link)
-
-    def _came_in_time(self) -> None:
-        """A message of this process, which the reader does not see: another is due by the deadline."""
-        network = self._network
-        with network.reactor.lock:
-            if self._reader is not None:
-                self._reader.note_deadline(network.reactor.now())
-                network.shell.flush()
 
     @property
     def publisher_count(self) -> int:

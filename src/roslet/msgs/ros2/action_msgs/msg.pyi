@@ -3,16 +3,17 @@
 import typing as _typing
 
 from roslet.wire import message as _message
+from roslet.wire import time as _time
 from roslet.msgs.ros2.builtin_interfaces import msg as _builtin_interfaces_msg
 from roslet.msgs.ros2.unique_identifier_msgs import msg as _unique_identifier_msgs_msg
 
 class GoalInfo(_message.Message):
     goal_id: _unique_identifier_msgs_msg.UUID
-    stamp: _builtin_interfaces_msg.Time
+    stamp: _builtin_interfaces_msg.Time | _time.Time
     def __init__(
         self,
         goal_id: _unique_identifier_msgs_msg.UUID | None = ...,
-        stamp: _builtin_interfaces_msg.Time | None = ...,
+        stamp: _builtin_interfaces_msg.Time | _time.Time | None = ...,
     ) -> None: ...
 
 class GoalStatus(_message.Message):

@@ -3,15 +3,16 @@
 import typing as _typing
 
 from roslet.wire import message as _message
+from roslet.wire import time as _time
 from roslet.msgs.ros2.builtin_interfaces import msg as _builtin_interfaces_msg
 from roslet.msgs.ros2.std_msgs import msg as _std_msgs_msg
 
 class GoalID(_message.Message):
-    stamp: _builtin_interfaces_msg.Time
+    stamp: _builtin_interfaces_msg.Time | _time.Time
     id: str
     def __init__(
         self,
-        stamp: _builtin_interfaces_msg.Time | None = ...,
+        stamp: _builtin_interfaces_msg.Time | _time.Time | None = ...,
         id: str = ...,
     ) -> None: ...
 

@@ -3,7 +3,7 @@
 
 from roslet.wire import message as _message
 
-class Duration(_message.Message):
+class Duration(_message.Stamp):
     sec: int
     nanosec: int
     def __init__(
@@ -12,7 +12,7 @@ class Duration(_message.Message):
         nanosec: int = ...,
     ) -> None: ...
 
-class Time(_message.Message):
+class Time(_message.Stamp):
     sec: int
     nanosec: int
     def __init__(

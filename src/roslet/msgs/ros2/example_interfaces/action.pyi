@@ -3,6 +3,7 @@
 import typing as _typing
 
 from roslet.wire import message as _message
+from roslet.wire import time as _time
 from roslet.msgs.ros2.builtin_interfaces import msg as _builtin_interfaces_msg
 from roslet.msgs.ros2.service_msgs import msg as _service_msgs_msg
 from roslet.msgs.ros2.unique_identifier_msgs import msg as _unique_identifier_msgs_msg
@@ -86,11 +87,11 @@ class Fibonacci_SendGoal_Request(_message.Message):
 
 class Fibonacci_SendGoal_Response(_message.Message):
     accepted: bool
-    stamp: _builtin_interfaces_msg.Time
+    stamp: _builtin_interfaces_msg.Time | _time.Time
     def __init__(
         self,
         accepted: bool = ...,
-        stamp: _builtin_interfaces_msg.Time | None = ...,
+        stamp: _builtin_interfaces_msg.Time | _time.Time | None = ...,
     ) -> None: ...
 
 class Fibonacci(_message.Action):

@@ -3,6 +3,7 @@
 import typing as _typing
 
 from roslet.wire import message as _message
+from roslet.wire import time as _time
 from roslet.msgs.ros2.builtin_interfaces import msg as _builtin_interfaces_msg
 from roslet.msgs.ros2.geometry_msgs import msg as _geometry_msgs_msg
 from roslet.msgs.ros2.std_msgs import msg as _std_msgs_msg
@@ -30,14 +31,14 @@ class GridCells(_message.Message):
     ) -> None: ...
 
 class MapMetaData(_message.Message):
-    map_load_time: _builtin_interfaces_msg.Time
+    map_load_time: _builtin_interfaces_msg.Time | _time.Time
     resolution: float
     width: int
     height: int
     origin: _geometry_msgs_msg.Pose
     def __init__(
         self,
-        map_load_time: _builtin_interfaces_msg.Time | None = ...,
+        map_load_time: _builtin_interfaces_msg.Time | _time.Time | None = ...,
         resolution: float = ...,
         width: int = ...,
         height: int = ...,

@@ -4,6 +4,7 @@ import typing as _typing
 from collections import abc as _abc
 
 from roslet.wire import message as _message
+from roslet.wire import time as _time
 from roslet.msgs.ros2.builtin_interfaces import msg as _builtin_interfaces_msg
 
 class FloatingPointRange(_message.Message):
@@ -43,7 +44,7 @@ class Log(_message.Message):
     WARN: _typing.ClassVar[int]
     ERROR: _typing.ClassVar[int]
     FATAL: _typing.ClassVar[int]
-    stamp: _builtin_interfaces_msg.Time
+    stamp: _builtin_interfaces_msg.Time | _time.Time
     level: int
     name: str
     msg: str
@@ -52,7 +53,7 @@ class Log(_message.Message):
     line: int
     def __init__(
         self,
-        stamp: _builtin_interfaces_msg.Time | None = ...,
+        stamp: _builtin_interfaces_msg.Time | _time.Time | None = ...,
         level: int = ...,
         name: str = ...,
         msg: str = ...,
@@ -107,14 +108,14 @@ class ParameterDescriptor(_message.Message):
     ) -> None: ...
 
 class ParameterEvent(_message.Message):
-    stamp: _builtin_interfaces_msg.Time
+    stamp: _builtin_interfaces_msg.Time | _time.Time
     node: str
     new_parameters: list[Parameter]
     changed_parameters: list[Parameter]
     deleted_parameters: list[Parameter]
     def __init__(
         self,
-        stamp: _builtin_interfaces_msg.Time | None = ...,
+        stamp: _builtin_interfaces_msg.Time | _time.Time | None = ...,
         node: str = ...,
         new_parameters: list[Parameter] | None = ...,
         changed_parameters: list[Parameter] | None = ...,

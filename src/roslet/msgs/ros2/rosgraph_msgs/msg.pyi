@@ -2,11 +2,12 @@
 
 
 from roslet.wire import message as _message
+from roslet.wire import time as _time
 from roslet.msgs.ros2.builtin_interfaces import msg as _builtin_interfaces_msg
 
 class Clock(_message.Message):
-    clock: _builtin_interfaces_msg.Time
+    clock: _builtin_interfaces_msg.Time | _time.Time
     def __init__(
         self,
-        clock: _builtin_interfaces_msg.Time | None = ...,
+        clock: _builtin_interfaces_msg.Time | _time.Time | None = ...,
     ) -> None: ...

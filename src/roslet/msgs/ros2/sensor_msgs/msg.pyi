@@ -4,6 +4,7 @@ import typing as _typing
 from collections import abc as _abc
 
 from roslet.wire import message as _message
+from roslet.wire import time as _time
 from roslet.msgs.ros2.builtin_interfaces import msg as _builtin_interfaces_msg
 from roslet.msgs.ros2.geometry_msgs import msg as _geometry_msgs_msg
 from roslet.msgs.ros2.std_msgs import msg as _std_msgs_msg
@@ -462,11 +463,11 @@ class Temperature(_message.Message):
 
 class TimeReference(_message.Message):
     header: _std_msgs_msg.Header
-    time_ref: _builtin_interfaces_msg.Time
+    time_ref: _builtin_interfaces_msg.Time | _time.Time
     source: str
     def __init__(
         self,
         header: _std_msgs_msg.Header | None = ...,
-        time_ref: _builtin_interfaces_msg.Time | None = ...,
+        time_ref: _builtin_interfaces_msg.Time | _time.Time | None = ...,
         source: str = ...,
     ) -> None: ...

@@ -3,22 +3,23 @@
 import typing as _typing
 
 from roslet.wire import message as _message
+from roslet.wire import time as _time
 from roslet.msgs.ros2.builtin_interfaces import msg as _builtin_interfaces_msg
 
 class MetricsMessage(_message.Message):
     measurement_source_name: str
     metrics_source: str
     unit: str
-    window_start: _builtin_interfaces_msg.Time
-    window_stop: _builtin_interfaces_msg.Time
+    window_start: _builtin_interfaces_msg.Time | _time.Time
+    window_stop: _builtin_interfaces_msg.Time | _time.Time
     statistics: list[StatisticDataPoint]
     def __init__(
         self,
         measurement_source_name: str = ...,
         metrics_source: str = ...,
         unit: str = ...,
-        window_start: _builtin_interfaces_msg.Time | None = ...,
-        window_stop: _builtin_interfaces_msg.Time | None = ...,
+        window_start: _builtin_interfaces_msg.Time | _time.Time | None = ...,
+        window_stop: _builtin_interfaces_msg.Time | _time.Time | None = ...,
         statistics: list[StatisticDataPoint] | None = ...,
     ) -> None: ...
 

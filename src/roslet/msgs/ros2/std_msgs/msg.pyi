@@ -4,6 +4,7 @@ import typing as _typing
 from collections import abc as _abc
 
 from roslet.wire import message as _message
+from roslet.wire import time as _time
 from roslet.msgs.ros2.builtin_interfaces import msg as _builtin_interfaces_msg
 
 class Bool(_message.Message):
@@ -85,11 +86,11 @@ class Float64MultiArray(_message.Message):
     ) -> None: ...
 
 class Header(_message.Message):
-    stamp: _builtin_interfaces_msg.Time
+    stamp: _builtin_interfaces_msg.Time | _time.Time
     frame_id: str
     def __init__(
         self,
-        stamp: _builtin_interfaces_msg.Time | None = ...,
+        stamp: _builtin_interfaces_msg.Time | _time.Time | None = ...,
         frame_id: str = ...,
     ) -> None: ...
 

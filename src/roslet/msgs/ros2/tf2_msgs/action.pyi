@@ -2,6 +2,7 @@
 
 
 from roslet.wire import message as _message
+from roslet.wire import time as _time
 from roslet.msgs.ros2.builtin_interfaces import msg as _builtin_interfaces_msg
 from roslet.msgs.ros2.geometry_msgs import msg as _geometry_msgs_msg
 from roslet.msgs.ros2.service_msgs import msg as _service_msgs_msg
@@ -50,18 +51,18 @@ class LookupTransform_GetResult_Response(_message.Message):
 class LookupTransform_Goal(_message.Message):
     target_frame: str
     source_frame: str
-    source_time: _builtin_interfaces_msg.Time
-    timeout: _builtin_interfaces_msg.Duration
-    target_time: _builtin_interfaces_msg.Time
+    source_time: _builtin_interfaces_msg.Time | _time.Time
+    timeout: _builtin_interfaces_msg.Duration | _time.Duration
+    target_time: _builtin_interfaces_msg.Time | _time.Time
     fixed_frame: str
     advanced: bool
     def __init__(
         self,
         target_frame: str = ...,
         source_frame: str = ...,
-        source_time: _builtin_interfaces_msg.Time | None = ...,
-        timeout: _builtin_interfaces_msg.Duration | None = ...,
-        target_time: _builtin_interfaces_msg.Time | None = ...,
+        source_time: _builtin_interfaces_msg.Time | _time.Time | None = ...,
+        timeout: _builtin_interfaces_msg.Duration | _time.Duration | None = ...,
+        target_time: _builtin_interfaces_msg.Time | _time.Time | None = ...,
         fixed_frame: str = ...,
         advanced: bool = ...,
     ) -> None: ...
@@ -97,11 +98,11 @@ class LookupTransform_SendGoal_Request(_message.Message):
 
 class LookupTransform_SendGoal_Response(_message.Message):
     accepted: bool
-    stamp: _builtin_interfaces_msg.Time
+    stamp: _builtin_interfaces_msg.Time | _time.Time
     def __init__(
         self,
         accepted: bool = ...,
-        stamp: _builtin_interfaces_msg.Time | None = ...,
+        stamp: _builtin_interfaces_msg.Time | _time.Time | None = ...,
     ) -> None: ...
 
 class LookupTransform(_message.Action):

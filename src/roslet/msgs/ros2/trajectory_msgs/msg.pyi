@@ -3,6 +3,7 @@
 import typing as _typing
 
 from roslet.wire import message as _message
+from roslet.wire import time as _time
 from roslet.msgs.ros2.builtin_interfaces import msg as _builtin_interfaces_msg
 from roslet.msgs.ros2.geometry_msgs import msg as _geometry_msgs_msg
 from roslet.msgs.ros2.std_msgs import msg as _std_msgs_msg
@@ -23,14 +24,14 @@ class JointTrajectoryPoint(_message.Message):
     velocities: _typing.Any
     accelerations: _typing.Any
     effort: _typing.Any
-    time_from_start: _builtin_interfaces_msg.Duration
+    time_from_start: _builtin_interfaces_msg.Duration | _time.Duration
     def __init__(
         self,
         positions: _typing.Any = ...,
         velocities: _typing.Any = ...,
         accelerations: _typing.Any = ...,
         effort: _typing.Any = ...,
-        time_from_start: _builtin_interfaces_msg.Duration | None = ...,
+        time_from_start: _builtin_interfaces_msg.Duration | _time.Duration | None = ...,
     ) -> None: ...
 
 class MultiDOFJointTrajectory(_message.Message):
@@ -48,11 +49,11 @@ class MultiDOFJointTrajectoryPoint(_message.Message):
     transforms: list[_geometry_msgs_msg.Transform]
     velocities: list[_geometry_msgs_msg.Twist]
     accelerations: list[_geometry_msgs_msg.Twist]
-    time_from_start: _builtin_interfaces_msg.Duration
+    time_from_start: _builtin_interfaces_msg.Duration | _time.Duration
     def __init__(
         self,
         transforms: list[_geometry_msgs_msg.Transform] | None = ...,
         velocities: list[_geometry_msgs_msg.Twist] | None = ...,
         accelerations: list[_geometry_msgs_msg.Twist] | None = ...,
-        time_from_start: _builtin_interfaces_msg.Duration | None = ...,
+        time_from_start: _builtin_interfaces_msg.Duration | _time.Duration | None = ...,
     ) -> None: ...

@@ -4,6 +4,7 @@ import typing as _typing
 from collections import abc as _abc
 
 from roslet.wire import message as _message
+from roslet.wire import time as _time
 from roslet.msgs.ros2.builtin_interfaces import msg as _builtin_interfaces_msg
 from roslet.msgs.ros2.geometry_msgs import msg as _geometry_msgs_msg
 from roslet.msgs.ros2.sensor_msgs import msg as _sensor_msgs_msg
@@ -27,7 +28,7 @@ class ImageMarker(_message.Message):
     outline_color: _std_msgs_msg.ColorRGBA
     filled: int
     fill_color: _std_msgs_msg.ColorRGBA
-    lifetime: _builtin_interfaces_msg.Duration
+    lifetime: _builtin_interfaces_msg.Duration | _time.Duration
     points: list[_geometry_msgs_msg.Point]
     outline_colors: list[_std_msgs_msg.ColorRGBA]
     def __init__(
@@ -42,7 +43,7 @@ class ImageMarker(_message.Message):
         outline_color: _std_msgs_msg.ColorRGBA | None = ...,
         filled: int = ...,
         fill_color: _std_msgs_msg.ColorRGBA | None = ...,
-        lifetime: _builtin_interfaces_msg.Duration | None = ...,
+        lifetime: _builtin_interfaces_msg.Duration | _time.Duration | None = ...,
         points: list[_geometry_msgs_msg.Point] | None = ...,
         outline_colors: list[_std_msgs_msg.ColorRGBA] | None = ...,
     ) -> None: ...
@@ -196,7 +197,7 @@ class Marker(_message.Message):
     pose: _geometry_msgs_msg.Pose
     scale: _geometry_msgs_msg.Vector3
     color: _std_msgs_msg.ColorRGBA
-    lifetime: _builtin_interfaces_msg.Duration
+    lifetime: _builtin_interfaces_msg.Duration | _time.Duration
     frame_locked: bool
     points: list[_geometry_msgs_msg.Point]
     colors: list[_std_msgs_msg.ColorRGBA]
@@ -217,7 +218,7 @@ class Marker(_message.Message):
         pose: _geometry_msgs_msg.Pose | None = ...,
         scale: _geometry_msgs_msg.Vector3 | None = ...,
         color: _std_msgs_msg.ColorRGBA | None = ...,
-        lifetime: _builtin_interfaces_msg.Duration | None = ...,
+        lifetime: _builtin_interfaces_msg.Duration | _time.Duration | None = ...,
         frame_locked: bool = ...,
         points: list[_geometry_msgs_msg.Point] | None = ...,
         colors: list[_std_msgs_msg.ColorRGBA] | None = ...,
