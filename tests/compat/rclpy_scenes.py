@@ -37,6 +37,7 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
     "waiting for messages": (("wait_for_message.py",),),
     "messages": (("messages.py",),),
     "serialization": (("serialization.py",),),
+    "annotations": (("annotations.py",),),
     "type support": (("type_support.py",),),
     "timers": (("timers.py",),),
     "rates": (("rates.py",),),

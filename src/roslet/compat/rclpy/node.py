@@ -60,6 +60,7 @@ if TYPE_CHECKING:
     from roslet.compat.rclpy.executors import Executor
     from roslet.compat.rclpy.impl.rcutils_logger import RcutilsLogger
 
+HIDDEN_NODE_PREFIX = "_"
 _DESCRIBE = "start_type_description_service"
 
 
@@ -567,6 +568,7 @@ class Node(ParametersOfNode, GraphOfNode):
 
 
 __all__ = [
+    "HIDDEN_NODE_PREFIX",
     "PARAMETER_SEPARATOR_STRING",
     "Node",
     "NotInitializedException",
