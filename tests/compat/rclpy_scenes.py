@@ -51,6 +51,7 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
     "parameters": (("parameters.py",),),
     "parameter clients": (("parameter_clients.py",),),
     "quality of service": (("qos.py",),),
+    "what fits best": (("qos_best.py",),),
     "events": (("qos_events.py",),),
     "callback groups": (("callback_groups.py",),),
     "executors": (("executors.py",),),

@@ -6,6 +6,7 @@ import weakref
 from typing import TYPE_CHECKING, Any
 
 from roslet.compat.interfaces import message_class
+from roslet.compat.rclpy._best import fitting
 from roslet.compat.rclpy._entity import Entity
 from roslet.compat.rclpy._graph import GraphOfNode
 from roslet.compat.rclpy._names import expand
@@ -368,7 +369,7 @@ class Node(ParametersOfNode, GraphOfNode):
         check_is_valid_msg_type(msg_type)
         full = self._resolve(topic, TOPIC)
         qos = declare_qos_parameters("publisher", self, full, qos, qos_overriding_options)
-        endpoint: Any = self._network.publisher(full, msg_type, qos.to_roslet())
+        endpoint: Any = self._network.publisher(full, msg_type, fitting(qos, self._network, full, True))
         publisher = publisher_class(endpoint, msg_type, topic, qos, self._logger_name)
         callbacks = PublisherEventCallbacks() if event_callbacks is None else event_callbacks
         publisher.event_handlers = callbacks.create_event_handlers(
@@ -403,7 +404,9 @@ class Node(ParametersOfNode, GraphOfNode):
             raise RuntimeError("roslet has no content filters")
         qos = declare_qos_parameters("subscription", self, full, qos, qos_overriding_options)
         group = callback_group or self._default_callback_group
-        endpoint: Any = self._network.subscription(full, msg_type, None, qos.to_roslet(), MAX_FRAME)
+        endpoint: Any = self._network.subscription(
+            full, msg_type, None, fitting(qos, self._network, full, False), MAX_FRAME
+        )
         try:
             made = Subscription(endpoint, msg_type, topic, callback, group, qos, raw, self._logger_name)
         except RuntimeError:
