@@ -232,10 +232,10 @@ class ParametersOfNode:
         return self.get_parameter(name)
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """Those below a prefix, by what follows it."""
+        """Those below a prefix, by what follows it; NOT_SET where one has no value yet."""
         begin = prefix + "." if prefix else ""
         return {
-            name[len(begin) :]: self.get_parameter(name)
+            name[len(begin) :]: self.get_parameter_or(name)
             for name in self._store.names()
             if name.startswith(begin)
         }
