@@ -7,6 +7,7 @@ import os
 import socket
 from collections.abc import Callable
 from typing import Any
+from xmlrpc.client import ServerProxy
 
 import pytest
 
@@ -145,8 +146,11 @@ def test_nodes_that_answer_are_fine_and_one_that_is_gone_is_a_problem(run: Run, 
         assert outcome.code == 0, outcome.out
         rows = {row["about"]: row for row in json.loads(outcome.out)}
         assert rows["node /robot"]["level"] == "ok"
-        node.call_master("registerPublisher", "/gone", "std_msgs/String", "http://127.0.0.1:1/")
-        node.call_master("registerService", "/lost", "rosrpc://127.0.0.1:1", "http://127.0.0.1:1/")
+        # Under another name: a master asks a node to shut down when its name is registered at another address.
+        gone = "http://127.0.0.1:1/"
+        with ServerProxy(f"http://127.0.0.1:{master.port}/") as proxy:
+            assert proxy.registerPublisher("/departed", "/gone", "std_msgs/String", gone)[0] == 1  # type: ignore[index]
+            assert proxy.registerService("/departed", "/lost", "rosrpc://127.0.0.1:1", gone)[0] == 1  # type: ignore[index]
         outcome = run("doctor", "--json")
     assert outcome.code == 1
     problems = [row["text"] for row in json.loads(outcome.out) if row["level"] == "problem"]

@@ -37,6 +37,7 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
     "waiting for messages": (("wait_for_message.py",),),
     "messages": (("messages.py",),),
     "serialization": (("serialization.py",),),
+    "annotations": (("annotations.py",),),
     "type support": (("type_support.py",),),
     "timers": (("timers.py",),),
     "rates": (("rates.py",),),
@@ -47,10 +48,12 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
     "failing services": (("service_failing.py",),),
     "actions": (("actions.py",),),
     "action server and client": (("action_server.py",), ("action_client.py",)),
+    "corners": (("corners.py",),),
     "parameters": (("parameters.py",),),
     "parameter clients": (("parameter_clients.py",),),
     "parameters of another node": (("parameter_owner.py",), ("parameter_asker.py",)),
     "quality of service": (("qos.py",),),
+    "what fits best": (("qos_best.py",),),
     "events": (("qos_events.py",),),
     "callback groups": (("callback_groups.py",),),
     "executors": (("executors.py",),),
@@ -115,7 +118,7 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
 # Their log lines on standard error are compared too.
 LOGGED = ("logging",)
 # They need the package test_msgs, the only one among the wheels that has an action.
-NEED_TEST_MSGS = ("actions", "action server and client")
+NEED_TEST_MSGS = ("actions", "corners", "action server and client")
 
 _LOG = re.compile(r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] \[\d+\.\d+\] (?!\[(?:rcl|rmw))")
 _TIME = re.compile(r"\[\d{9,}\.\d+\]")

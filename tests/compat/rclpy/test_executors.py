@@ -18,7 +18,7 @@ from roslet.compat.rclpy.callback_groups import (
 from roslet.compat.rclpy.clock import Clock, ROSClock
 from roslet.compat.rclpy.clock_type import ClockType
 from roslet.compat.rclpy.context import Context, end_all
-from roslet.compat.rclpy.exceptions import InvalidHandle, ROSInterruptException
+from roslet.compat.rclpy.exceptions import InvalidHandle, RCLError, ROSInterruptException
 from roslet.compat.rclpy.executors import (
     Executor,
     ExternalShutdownException,
@@ -296,7 +296,7 @@ def test_cancelled_reset_and_destroyed_timers(clock: ROSClock) -> None:
     timer.destroy()
     with pytest.raises(InvalidHandle):
         timer.cancel()
-    with pytest.raises(ValueError, match="non-negative"):
+    with pytest.raises(RCLError, match="non-negative"):
         Timer(None, None, -1, clock)
 
 

@@ -34,10 +34,10 @@ def test_no_bound_is_zero_or_infinite_for_rclpy_and_none_for_roslet() -> None:
     assert QoSProfile.from_roslet(QoS()).deadline == Infinite
 
 
-def test_what_is_left_open_becomes_the_default_and_best_available_fits_every_publisher() -> None:
+def test_what_is_left_open_becomes_the_default_and_best_available_too_where_nobody_is_asked() -> None:
     assert QoSPresetProfiles.SYSTEM_DEFAULT.value.to_roslet() == QoS(1)
     best = QoSPresetProfiles.BEST_AVAILABLE.value.to_roslet()
-    assert (best.reliability, best.durability, best.deadline) == ("best_effort", "volatile", None)
+    assert (best.reliability, best.durability, best.deadline) == ("reliable", "volatile", None)
 
 
 def test_from_roslet_names_every_policy() -> None:

@@ -22,7 +22,7 @@ class GraphOfNode:
     _network: RclpyNetwork
     context: Context
 
-    def _check(self) -> None:
+    def _node_check(self) -> None:
         raise NotImplementedError
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
@@ -31,9 +31,9 @@ class GraphOfNode:
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
         raise NotImplementedError
 
-    def _ask(self, question: Any) -> Any:
+    def _node_ask(self, question: Any) -> Any:
         """`question(graph)`, with the loop's lock held. Raises InvalidHandle."""
-        self._check()
+        self._node_check()
         network = self._network
         with network.reactor.lock:
             return question(network.graph)
@@ -41,7 +41,7 @@ class GraphOfNode:
     # -- nodes
 
     def _nodes(self) -> list[Any]:
-        found: list[Any] = self._ask(lambda graph: graph.nodes())
+        found: list[Any] = self._node_ask(lambda graph: graph.nodes())
         return found
 
     def get_node_names(self) -> list[str]:
@@ -75,11 +75,11 @@ class GraphOfNode:
 
     def get_topic_names_and_types(self, no_demangle: bool = False) -> Named:
         """(topic, types); with `no_demangle` every topic of DDS by its name there."""
-        return list(self._ask(lambda graph: graph.topics(mangled=no_demangle)).items())
+        return list(self._node_ask(lambda graph: graph.topics(mangled=no_demangle)).items())
 
     def get_service_names_and_types(self) -> Named:
         """(service, types) of all services that somebody serves or calls."""
-        return _united(self._ask(lambda graph: (graph.services(), graph.clients())))
+        return _united(self._node_ask(lambda graph: (graph.services(), graph.clients())))
 
     def _of(self, name: str, namespace: str, question: Any) -> Named:
         """Raises NodeNameNonExistentError."""
@@ -91,7 +91,7 @@ class GraphOfNode:
                 )
             return question(graph)
 
-        return list(self._ask(ask).items())
+        return list(self._node_ask(ask).items())
 
     def get_publisher_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
@@ -120,22 +120,22 @@ class GraphOfNode:
     def count_publishers(self, topic_name: str) -> int:
         """How many publishers a topic has."""
         topic = dds_topic(TOPIC, self.resolve_topic_name(topic_name))
-        return int(self._ask(lambda graph: graph.count(topic, True)))
+        return int(self._node_ask(lambda graph: graph.count(topic, True)))
 
     def count_subscribers(self, topic_name: str) -> int:
         """How many subscriptions a topic has."""
         topic = dds_topic(TOPIC, self.resolve_topic_name(topic_name))
-        return int(self._ask(lambda graph: graph.count(topic, False)))
+        return int(self._node_ask(lambda graph: graph.count(topic, False)))
 
     def count_services(self, service_name: str) -> int:
         """How many servers a service has."""
         topic = dds_topic(REQUEST, self.resolve_service_name(service_name))
-        return int(self._ask(lambda graph: graph.count(topic, False)))
+        return int(self._node_ask(lambda graph: graph.count(topic, False)))
 
     def count_clients(self, service_name: str) -> int:
         """How many clients a service has."""
         topic = dds_topic(REPLY, self.resolve_service_name(service_name))
-        return int(self._ask(lambda graph: graph.count(topic, False)))
+        return int(self._node_ask(lambda graph: graph.count(topic, False)))
 
     def get_publishers_info_by_topic(
         self, topic_name: str, no_mangle: bool = False
@@ -153,12 +153,12 @@ class GraphOfNode:
         if no_mangle:
             found = [
                 one
-                for one in self._ask(lambda graph: graph.endpoints(writers=writers, channel=None))
+                for one in self._node_ask(lambda graph: graph.endpoints(writers=writers, channel=None))
                 if (dds_topic(one.channel, one.name) if one.channel else one.name) == topic
             ]
         else:
             full = self.resolve_topic_name(topic)
-            found = self._ask(lambda graph: graph.endpoints(full, writers=writers))
+            found = self._node_ask(lambda graph: graph.endpoints(full, writers=writers))
         return [TopicEndpointInfo(one) for one in found]
 
 

@@ -128,12 +128,12 @@ class ParametersOfNode:
     _network: RclpyNetwork
     _set_callbacks: dict[tuple[str, Any], list[Callable[[Any], Any]]]
 
-    def _check(self) -> None:
+    def _node_check(self) -> None:
         raise NotImplementedError
 
     @property
-    def _store(self) -> store.Parameters:
-        self._check()
+    def _node_store(self) -> store.Parameters:
+        self._node_check()
         return self._network.parameters.store
 
     # -- declaring
@@ -153,7 +153,7 @@ class ParametersOfNode:
         self, namespace: str, parameters: Sequence[Sequence[Any]], ignore_override: bool = False
     ) -> list[Parameter]:
         """Declare several, each (name), (name, value) or (name, value, descriptor), within a namespace of parameters."""
-        within = self._store
+        within = self._node_store
         found = []
         for given in parameters:
             if not 1 <= len(given) <= 3 or not isinstance(given[0], str):
@@ -166,9 +166,9 @@ class ParametersOfNode:
         known = [name for name, *_ in found if within.has(name)]
         if known:
             raise ParameterAlreadyDeclaredException(known)
-        return [self._declare(within, *one, ignore_override) for one in found]
+        return [self._node_declare(within, *one, ignore_override) for one in found]
 
-    def _declare(
+    def _node_declare(
         self, within: store.Parameters, name: str, value: Any, descriptor: Any, ignore_override: bool
     ) -> Parameter:
         described = to_description(descriptor) if descriptor is not None else store.Descriptor()
@@ -195,7 +195,7 @@ class ParametersOfNode:
 
     def undeclare_parameter(self, name: str) -> None:
         """Raises ParameterNotDeclaredException, ParameterImmutableException."""
-        within = self._store
+        within = self._node_store
         if not within.has(name):
             raise ParameterNotDeclaredException(name)
         try:
@@ -207,12 +207,12 @@ class ParametersOfNode:
 
     def has_parameter(self, name: str) -> bool:
         """Whether it is declared."""
-        return self._store.has(name)
+        return self._node_store.has(name)
 
     def get_parameter(self, name: str) -> Parameter:
         """Raises ParameterNotDeclaredException, ParameterUninitializedException."""
         try:
-            return from_store(self._store.get(name))
+            return from_store(self._node_store.get(name))
         except ParameterUninitialized:
             raise ParameterUninitializedException(name) from None
         except ParameterNotDeclared:
@@ -226,24 +226,24 @@ class ParametersOfNode:
 
     def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
         """The parameter, or the alternative where it is not declared or has no value."""
-        within = self._store
+        within = self._node_store
         if within.get_or(name) is None:
             return Parameter(name) if alternative_value is None else alternative_value
         return self.get_parameter(name)
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """Those below a prefix, by what follows it."""
+        """Those below a prefix, by what follows it; NOT_SET where one has no value yet."""
         begin = prefix + "." if prefix else ""
         return {
-            name[len(begin) :]: self.get_parameter(name)
-            for name in self._store.names()
+            name[len(begin) :]: self.get_parameter_or(name)
+            for name in self._node_store.names()
             if name.startswith(begin)
         }
 
     def get_parameter_type(self, name: str) -> int:
         """The number of its type. Raises ParameterNotDeclaredException."""
         try:
-            return self._store.get_type(name)
+            return self._node_store.get_type(name)
         except ParameterNotDeclared:
             raise ParameterNotDeclaredException(name) from None
 
@@ -253,13 +253,13 @@ class ParametersOfNode:
 
     def list_parameters(self, prefixes: Sequence[str], depth: int) -> Any:
         """A ListParametersResult: those below any prefix, all where there is none, `depth` levels deep, 0 for all."""
-        names, found = self._store.list_parameters(list(prefixes), depth)
+        names, found = self._node_store.list_parameters(list(prefixes), depth)
         return message_class("rcl_interfaces/msg/ListParametersResult")(names=names, prefixes=found)
 
     def describe_parameter(self, name: str) -> Any:
         """A ParameterDescriptor. Raises ParameterNotDeclaredException."""
         try:
-            return services.to_descriptor(self._store.describe(name))
+            return services.to_descriptor(self._node_store.describe(name))
         except ParameterNotDeclared:
             raise ParameterNotDeclaredException(name) from None
 
@@ -282,9 +282,9 @@ class ParametersOfNode:
 
     def _set(self, parameters: Sequence[Parameter]) -> Any:
         try:
-            successful, reason = self._store.set_atomically([to_store(one) for one in parameters])
+            successful, reason = self._node_store.set_atomically([to_store(one) for one in parameters])
         except ParameterNotDeclared:
-            within = self._store
+            within = self._node_store
             raise ParameterNotDeclaredException(
                 [one.name for one in parameters if not within.has(one.name)]
             ) from None
@@ -296,7 +296,9 @@ class ParametersOfNode:
         InvalidParameterValueException."""
         otherwise = None if alternative_value is None else services.from_value(name, alternative_value).value
         try:
-            return services.to_value(self._store.set_descriptor(name, to_description(descriptor), otherwise))
+            return services.to_value(
+                self._node_store.set_descriptor(name, to_description(descriptor), otherwise)
+            )
         except ParameterNotDeclared:
             raise ParameterNotDeclaredException(name) from None
         except ParameterReadOnly:
@@ -312,7 +314,7 @@ class ParametersOfNode:
         def before(parameters: list[store.Parameter]) -> list[store.Parameter]:
             return [to_store(one) for one in callback([from_store(one) for one in parameters])]
 
-        self._store.add_pre_set(before)
+        self._node_store.add_pre_set(before)
         self._set_callbacks.setdefault(("pre", callback), []).append(before)
 
     def add_on_set_parameters_callback(self, callback: Callable[[list[Parameter]], Any]) -> None:
@@ -322,7 +324,7 @@ class ParametersOfNode:
             result = callback([from_store(one) for one in parameters])
             return result.successful, result.reason
 
-        self._store.add_on_set(check)
+        self._node_store.add_on_set(check)
         self._set_callbacks.setdefault(("on", callback), []).append(check)
 
     def add_post_set_parameters_callback(self, callback: Callable[[list[Parameter]], None]) -> None:
@@ -331,20 +333,20 @@ class ParametersOfNode:
         def after(parameters: list[store.Parameter]) -> None:
             callback([from_store(one) for one in parameters])
 
-        self._store.add_post_set(after)
+        self._node_store.add_post_set(after)
         self._set_callbacks.setdefault(("post", callback), []).append(after)
 
     def remove_pre_set_parameters_callback(self, callback: Callable[..., Any]) -> None:
         """Raises ValueError where it was not added."""
-        self._store.remove_pre_set(self._own("pre", callback))
+        self._node_store.remove_pre_set(self._own("pre", callback))
 
     def remove_on_set_parameters_callback(self, callback: Callable[..., Any]) -> None:
         """Raises ValueError where it was not added."""
-        self._store.remove_on_set(self._own("on", callback))
+        self._node_store.remove_on_set(self._own("on", callback))
 
     def remove_post_set_parameters_callback(self, callback: Callable[..., Any]) -> None:
         """Raises ValueError where it was not added."""
-        self._store.remove_post_set(self._own("post", callback))
+        self._node_store.remove_post_set(self._own("post", callback))
 
     def _own(self, when: str, callback: Any) -> Any:
         made = self._set_callbacks.get((when, callback))

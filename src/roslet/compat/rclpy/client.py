@@ -98,10 +98,11 @@ class Client(Inbox):
         self._pending: dict[Future[Any], RosletFuture[Any]] = {}
 
     def call(self, request: Any, timeout_sec: float | None = None) -> Any:
-        """The response; None where there is none in time. Somebody else must spin meanwhile. Raises TypeError."""
+        """The response. Somebody else must spin meanwhile. Raises TimeoutError where there is none in time, TypeError."""
         future = self.call_async(request)
         if not wait_done(future, timeout_sec):
             self.remove_pending_request(future)
+            raise TimeoutError
         return future.result()
 
     def call_async(self, request: Any) -> Future[Any]:

@@ -6,6 +6,7 @@ import weakref
 from typing import TYPE_CHECKING, Any
 
 from roslet.compat.interfaces import message_class
+from roslet.compat.rclpy._best import fitting
 from roslet.compat.rclpy._entity import Entity
 from roslet.compat.rclpy._graph import GraphOfNode
 from roslet.compat.rclpy._names import expand
@@ -60,6 +61,7 @@ if TYPE_CHECKING:
     from roslet.compat.rclpy.executors import Executor
     from roslet.compat.rclpy.impl.rcutils_logger import RcutilsLogger
 
+HIDDEN_NODE_PREFIX = "_"
 _DESCRIBE = "start_type_description_service"
 
 
@@ -106,7 +108,7 @@ class Node(ParametersOfNode, GraphOfNode):
         namespace = namespace if namespace.startswith("/") else "/" + namespace
         validate_namespace(namespace)
         self._destroyed = False
-        self._executor: weakref.ref[Executor] | None = None
+        self._node_executor: weakref.ref[Executor] | None = None
         self._publishers: list[Publisher] = []
         self._entity_lists: dict[type, list[Any]] = {
             kind: [] for kind in (Subscription, Client, Service, Timer, GuardCondition, Entity)
@@ -114,7 +116,7 @@ class Node(ParametersOfNode, GraphOfNode):
         self._polled: tuple[Entity, ...] = ()
         self._order: dict[Entity, int] = {}
         self._active: set[Entity] = set()  # those that have notified and may be ready
-        self._rates: list[Rate] = []
+        self._node_rates: list[Rate] = []
         self._set_callbacks = {}
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
@@ -129,7 +131,7 @@ class Node(ParametersOfNode, GraphOfNode):
             raise RCLError(f"failed to create a node: {error}") from None
         self._network = self._inner.network_of
         self._logger_name = logger_name(self._network.name)
-        self._sink: Any = None
+        self._node_sink: Any = None
         self._context.track_node(self)
         overrides = {
             **self._network.arguments_overrides(),
@@ -188,28 +190,28 @@ class Node(ParametersOfNode, GraphOfNode):
             except NodeClosed:
                 return
 
-        self._sink = sink
+        self._node_sink = sink
         rcutils_logger.add_sink(self._logger_name, sink)
 
     # -- what it is
 
-    def _check(self) -> None:
+    def _node_check(self) -> None:
         if self._destroyed:
             raise InvalidHandle()
 
     def get_name(self) -> str:
         """Its name, without the namespace. Raises InvalidHandle once it is destroyed, as all that follows."""
-        self._check()
+        self._node_check()
         return self._network.base_name
 
     def get_namespace(self) -> str:
         """Its namespace."""
-        self._check()
+        self._node_check()
         return self._network.namespace
 
     def get_fully_qualified_name(self) -> str:
         """Namespace and name."""
-        self._check()
+        self._node_check()
         return self._network.name
 
     def get_logger(self) -> RcutilsLogger:
@@ -233,7 +235,7 @@ class Node(ParametersOfNode, GraphOfNode):
     @property
     def executor(self) -> Executor | None:
         """The executor that runs its callbacks."""
-        return None if self._executor is None else self._executor()
+        return None if self._node_executor is None else self._node_executor()
 
     @executor.setter
     def executor(self, new_executor: Executor | None) -> None:
@@ -242,7 +244,7 @@ class Node(ParametersOfNode, GraphOfNode):
             return
         if current is not None:
             current.remove_node(self)
-        self._executor = None if new_executor is None else weakref.ref(new_executor)
+        self._node_executor = None if new_executor is None else weakref.ref(new_executor)
         if new_executor is not None:
             new_executor.add_node(self)
 
@@ -338,14 +340,14 @@ class Node(ParametersOfNode, GraphOfNode):
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
         """A topic's full name here, remappings applied unless `only_expand`."""
-        return self._resolve(topic, TOPIC, only_expand)
+        return self._node_resolve(topic, TOPIC, only_expand)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
         """A service's full name here."""
-        return self._resolve(service, REQUEST, only_expand)
+        return self._node_resolve(service, REQUEST, only_expand)
 
-    def _resolve(self, name: str, kind: str, only_expand: bool = False) -> str:
-        self._check()
+    def _node_resolve(self, name: str, kind: str, only_expand: bool = False) -> str:
+        self._node_check()
         validate_topic_name(name, is_service=kind == REQUEST)
         network = self._network
         try:
@@ -383,9 +385,9 @@ class Node(ParametersOfNode, GraphOfNode):
         """A publisher. Raises AttributeError where `msg_type` is no message class, InvalidTopicNameException."""
         qos = self._validate_qos(qos_profile)
         check_is_valid_msg_type(msg_type)
-        full = self._resolve(topic, TOPIC)
+        full = self._node_resolve(topic, TOPIC)
         qos = declare_qos_parameters("publisher", self, full, qos, qos_overriding_options)
-        endpoint: Any = self._network.publisher(full, msg_type, qos.to_roslet())
+        endpoint: Any = self._network.publisher(full, msg_type, fitting(qos, self._network, full, True))
         publisher = publisher_class(endpoint, msg_type, topic, qos, self._logger_name)
         callbacks = PublisherEventCallbacks() if event_callbacks is None else event_callbacks
         publisher.event_handlers = callbacks.create_event_handlers(
@@ -415,12 +417,14 @@ class Node(ParametersOfNode, GraphOfNode):
         """
         qos = self._validate_qos(qos_profile)
         check_is_valid_msg_type(msg_type)
-        full = self._resolve(topic, TOPIC)
+        full = self._node_resolve(topic, TOPIC)
         if content_filter_options is not None:
             raise RuntimeError("roslet has no content filters")
         qos = declare_qos_parameters("subscription", self, full, qos, qos_overriding_options)
         group = callback_group or self._default_callback_group
-        endpoint: Any = self._network.subscription(full, msg_type, None, qos.to_roslet(), MAX_FRAME)
+        endpoint: Any = self._network.subscription(
+            full, msg_type, None, fitting(qos, self._network, full, False), MAX_FRAME
+        )
         try:
             made = Subscription(endpoint, msg_type, topic, callback, group, qos, raw, self._logger_name)
         except RuntimeError:
@@ -443,7 +447,7 @@ class Node(ParametersOfNode, GraphOfNode):
     ) -> Client:
         """A client. Raises AttributeError where `srv_type` is no service class, InvalidServiceNameException."""
         check_is_valid_srv_type(srv_type)
-        full = self._resolve(srv_name, REQUEST)
+        full = self._node_resolve(srv_name, REQUEST)
         endpoint = self._network.client(full, srv_type, qos=qos_profile.to_roslet())
         group = callback_group or self._default_callback_group
         made = Client(endpoint, self._context, srv_type, srv_name, group, qos_profile, self._logger_name)
@@ -461,7 +465,7 @@ class Node(ParametersOfNode, GraphOfNode):
     ) -> Service:
         """A service: `callback(request, response)` returns the response. Raises as `create_client`."""
         check_is_valid_srv_type(srv_type)
-        full = self._resolve(srv_name, REQUEST)
+        full = self._node_resolve(srv_name, REQUEST)
         endpoint: Any = self._network.service(full, srv_type, lambda request: None, qos_profile.to_roslet())
         group = callback_group or self._default_callback_group
         made = Service(endpoint, srv_type, srv_name, callback, group, qos_profile, self._logger_name)
@@ -477,7 +481,7 @@ class Node(ParametersOfNode, GraphOfNode):
         autostart: bool = True,
     ) -> Timer:
         """A timer: `callback()` every `timer_period_sec` seconds of its clock, the node's where None."""
-        self._check()
+        self._node_check()
         group = callback_group or self._default_callback_group
         made = Timer(
             callback,
@@ -494,7 +498,7 @@ class Node(ParametersOfNode, GraphOfNode):
         self, callback: Callable[[], Any] | None, callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
         """A guard condition: `callback()` when it was triggered."""
-        self._check()
+        self._node_check()
         made = GuardCondition(callback, callback_group or self._default_callback_group, self._context)
         self._adopt(GuardCondition, made)
         return made
@@ -505,7 +509,7 @@ class Node(ParametersOfNode, GraphOfNode):
             raise ValueError("frequency must be > 0")
         timer = self.create_timer(1.0 / frequency, None, self._rate_group, clock)
         rate = Rate(timer, context=self._context)
-        self._rates.append(rate)
+        self._node_rates.append(rate)
         return rate
 
     # -- and destroys
@@ -536,9 +540,9 @@ class Node(ParametersOfNode, GraphOfNode):
         return self._disown(GuardCondition, guard)
 
     def destroy_rate(self, rate: Rate) -> bool:
-        if rate not in self._rates:
+        if rate not in self._node_rates:
             return False
-        self._rates.remove(rate)
+        self._node_rates.remove(rate)
         self._disown(Timer, rate._timer)
         rate.destroy()
         return True
@@ -551,12 +555,12 @@ class Node(ParametersOfNode, GraphOfNode):
         """The same when its context ends, without asking a subclass."""
         if self._destroyed:
             return
-        if self._sink is not None:
-            rcutils_logger.remove_sink(self._logger_name, self._sink)
+        if self._node_sink is not None:
+            rcutils_logger.remove_sink(self._logger_name, self._node_sink)
         self._destroyed = True
         self._context.untrack_node(self)
         self._network.follow = None
-        for rate in self._rates:
+        for rate in self._node_rates:
             rate.destroy()
         for kind, entities in self._entity_lists.items():
             self._entity_lists[kind] = []
@@ -585,6 +589,7 @@ class Node(ParametersOfNode, GraphOfNode):
 
 
 __all__ = [
+    "HIDDEN_NODE_PREFIX",
     "PARAMETER_SEPARATOR_STRING",
     "Node",
     "NotInitializedException",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import array
 from enum import IntEnum
+from types import GenericAlias
 from typing import TYPE_CHECKING, Any
 
 from roslet.compat.interfaces import message_class
@@ -82,6 +83,9 @@ class _Type(IntEnum):
 
 class Parameter:
     """A name, a type and a value; the value gives the type where none is given. Raises ValueError where they disagree."""
+
+    # Programs annotate with `Parameter[...]`, and Python evaluates that.
+    __class_getitem__: Any = classmethod(GenericAlias)
 
     Type = _Type
 

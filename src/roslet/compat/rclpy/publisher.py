@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import GenericAlias
 from typing import TYPE_CHECKING, Any
 
 from roslet.compat.rclpy.duration import Duration
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 
 class Publisher:
     """Publishes one topic. Made by `Node.create_publisher`."""
+
+    # Programs annotate with `Publisher[...]`, and Python evaluates that.
+    __class_getitem__: Any = classmethod(GenericAlias)
 
     def __init__(
         self, endpoint: QueuedPublisher, msg_type: Any, topic: str, qos_profile: QoSProfile, logger_name: str

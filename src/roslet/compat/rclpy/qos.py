@@ -206,8 +206,8 @@ class QoSProfile:
 
     def to_roslet(self) -> QoS:
         """The same for a roslet node: what is left to the system or to the other side is what rmw's default is, and
-        BEST_AVAILABLE what fits most."""
-        best_effort = self._reliability in (ReliabilityPolicy.BEST_EFFORT, ReliabilityPolicy.BEST_AVAILABLE)
+        BEST_AVAILABLE too, as for services; of topics `_best.fitting` knows better."""
+        best_effort = self._reliability == ReliabilityPolicy.BEST_EFFORT
         return QoS(
             max(self._depth, 1),
             "best_effort" if best_effort else "reliable",

@@ -104,4 +104,14 @@ def _policy(policy: QoSPolicyKind, before: Any, value: Any) -> Any:
     return type(before).get_from_short_key(value) if hasattr(before, "short_key") else value
 
 
+def __getattr__(name: str) -> Any:
+    """What a callback returns, and the type of callbacks. Made when asked for: making the message's class takes time."""
+    from collections.abc import Callable
+
+    if name not in ("QosCallbackResult", "QosCallbackType"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    result = message_class("rcl_interfaces/msg/SetParametersResult")
+    return result if name == "QosCallbackResult" else Callable[[QoSProfile], result]
+
+
 __all__ = ["InvalidQosOverridesError", "QoSOverridingOptions", "declare_qos_parameters"]

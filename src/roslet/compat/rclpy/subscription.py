@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from types import GenericAlias
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from roslet.compat.rclpy._entity import Entity
@@ -32,6 +33,9 @@ class MessageInfo(TypedDict):
 class Subscription(Entity):
     """Receives one topic. Made by `Node.create_subscription`. What arrives is kept, as many as the depth of the QoS, and
     made into a message in the executor's thread."""
+
+    # Programs annotate with `Subscription[...]`, and Python evaluates that.
+    __class_getitem__: Any = classmethod(GenericAlias)
 
     def __init__(
         self,

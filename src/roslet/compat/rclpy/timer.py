@@ -11,7 +11,7 @@ from roslet.compat.rclpy._entity import Entity
 from roslet.compat.rclpy.clock import Clock, ClockChange, JumpThreshold, TimeJump
 from roslet.compat.rclpy.clock_type import ClockType
 from roslet.compat.rclpy.duration import Duration
-from roslet.compat.rclpy.exceptions import InvalidHandle, ROSInterruptException
+from roslet.compat.rclpy.exceptions import InvalidHandle, RCLError, ROSInterruptException
 from roslet.compat.rclpy.time import Time
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class Timer(Entity):
         autostart: bool = True,
     ) -> None:
         if timer_period_ns < 0:
-            raise ValueError("timer period must be non-negative")
+            raise RCLError("failed to create timer: timer period must be non-negative")
         super().__init__(callback_group)
         self._clock = clock
         self._lock = threading.Lock()

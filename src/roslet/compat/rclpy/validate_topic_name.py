@@ -5,6 +5,8 @@ from __future__ import annotations
 from roslet.compat.rclpy._names import topic_fault
 from roslet.compat.rclpy.exceptions import InvalidServiceNameException, InvalidTopicNameException
 
+TOPIC_SEPARATOR_STRING = "/"
+
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
     """True for a topic's or service's name, which may be relative, private and have substitutions.
@@ -17,4 +19,4 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
     raise (InvalidServiceNameException if is_service else InvalidTopicNameException)(name, *fault)
 
 
-__all__ = ["validate_topic_name"]
+__all__ = ["TOPIC_SEPARATOR_STRING", "validate_topic_name"]

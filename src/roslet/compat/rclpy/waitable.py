@@ -6,6 +6,7 @@ the node, when a timer is due, and when a guard condition of the node is trigger
 
 from __future__ import annotations
 
+from types import GenericAlias
 from typing import TYPE_CHECKING, Any
 
 from roslet.compat.rclpy._entity import Entity
@@ -50,6 +51,8 @@ class Waitable(Entity):
     """The base: give it `is_ready`, `take_data` and `execute`, and add it by `Node.add_waitable`."""
 
     _polled = True
+    # Programs annotate with `Waitable[...]`, and Python evaluates that.
+    __class_getitem__: Any = classmethod(GenericAlias)
 
     def __init__(self, callback_group: CallbackGroup | None) -> None:
         super().__init__(callback_group)

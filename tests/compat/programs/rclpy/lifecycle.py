@@ -49,7 +49,9 @@ def call(kind, name, request):
 
 
 print(call(GetState, "/managed/get_state", GetState.Request()).current_state)
-print(node.trigger_configure().name)
+ended = node.trigger_configure()
+print(ended.name, ended, f"{ended}")
+print(node.count_publishers("topic"), "/managed/transition_event" in dict(node.get_topic_names_and_types()))
 print(call(GetState, "/managed/get_state", GetState.Request()).current_state)
 transitions = call(
     GetAvailableTransitions, "/managed/get_available_transitions", GetAvailableTransitions.Request()

@@ -148,10 +148,10 @@ class ActionClient:
         return future
 
     def send_goal(self, goal: Any, **kwargs: Any) -> Any:
-        """Send a goal and wait for its result: the response with status and result, None where it was rejected. Somebody
-        else must spin meanwhile. Takes what `send_goal_async` takes."""
+        """Send a goal and wait for its result: the response with status and result; a rejected goal has status unknown.
+        Somebody else must spin meanwhile. Takes what `send_goal_async` takes."""
         handle = _waited(self.send_goal_async(goal, **kwargs))
-        return handle.get_result() if handle.accepted else None
+        return handle.get_result()
 
     def send_goal_async(
         self,

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from roslet.compat.rclpy.callback_groups import CallbackGroup
+    from roslet.compat.rclpy.impl.rcutils_logger import RcutilsLogger
     from roslet.engine.ros2.actions import ServerGoal
 
 
@@ -276,15 +277,18 @@ class ActionServer:
         try:
             result = await await_or_execute(callback, handle)
         except Exception as error:
-            log = self._node.get_logger()
-            log.error(f"Error raised in execute callback: {error}")
+            self._log().error(f"Error raised in execute callback: {error}")
             traceback.print_exc()
         if handle.is_active:
             number = handle.goal_id.uuid
-            self._node.get_logger().warning(f"Goal state not set, assuming aborted. Goal ID: {number}")
+            self._log().warning(f"Goal state not set, assuming aborted. Goal ID: {number}")
             handle.abort()
         kind = self._action_type.Result
         self._endpoint._settle(handle._goal, result if isinstance(result, kind) else kind())
+
+    def _log(self) -> RcutilsLogger:
+        logger: RcutilsLogger = self._node.get_logger().get_child("action_server")
+        return logger
 
     def destroy(self) -> None:
         """Withdraw the action. Twice is allowed."""

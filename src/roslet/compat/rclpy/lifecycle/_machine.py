@@ -35,6 +35,12 @@ class TransitionCallbackReturn(IntEnum):
     FAILURE = 98
     ERROR = 99
 
+    def __str__(self) -> str:
+        return f"TransitionCallbackReturnType.{self.name}"
+
+    def __format__(self, format_spec: str) -> str:
+        return format(str(self), format_spec)
+
     def to_label(self) -> str:
         """The label of the transition that follows."""
         return "transition_" + self.name.lower()

@@ -91,13 +91,13 @@ class LifecycleNodeMixin(ManagedEntity):
             self._logger().error(f"Unable to start transition {which} from current state {before.label}")
             return TransitionCallbackReturn.ERROR
         self._go(begins)
-        ended = self._ask(before)
+        ended = self._call_for(before)
         self._conclude(ended)
         if ended is TransitionCallbackReturn.ERROR and self._machine.state == _machine.ERRORPROCESSING:
-            self._conclude(self._ask(before))
+            self._conclude(self._call_for(before))
         return ended
 
-    def _ask(self, before: LifecycleState) -> TransitionCallbackReturn:
+    def _call_for(self, before: LifecycleState) -> TransitionCallbackReturn:
         callback: Callable[[LifecycleState], Any] = getattr(self, _CALLBACKS[self._machine.state])
         try:
             found: TransitionCallbackReturn = TransitionCallbackReturn(callback(before))
