@@ -39,6 +39,8 @@ class Node:
     def __init__(self) -> None:
         self.executor: Executor | None = None
         self.entities: list[Entity] = []
+        self._polled = self.entities  # all are looked at in every turn
+        self._active: set[Entity] = set()
 
     def add(self, entity: Any) -> Any:
         entity._belongs_to(self)
