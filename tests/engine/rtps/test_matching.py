@@ -2,19 +2,94 @@
 
 import pytest
 
-from engine.rtps.network import Host, Network
-from engine.rtps.test_participants import BEST_EFFORT, RELIABLE, pair
+from engine.rtps.network import BEST_EFFORT, LATCHED, RELIABLE, Host, Network, body, matched, numbers, pair
 from roslet.engine.rtps import events
 from roslet.wire.rtps import locator, qos
-from roslet.wire.rtps.data import Data
-from roslet.wire.rtps.guid import ENTITYID_UNKNOWN
-from roslet.wire.rtps.heartbeat import Heartbeat
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
 pytestmark = pytest.mark.micropython
+
+
+def test_every_incompatible_policy_is_named_at_both_ends() -> None:
+    second = 1000000000
+    cases = [
+        (BEST_EFFORT, RELIABLE, ("reliability",)),
+        (RELIABLE, LATCHED, ("durability",)),
+        (RELIABLE.replace(deadline=2 * second), RELIABLE.replace(deadline=second), ("deadline",)),
+        (RELIABLE, RELIABLE.replace(liveliness=(qos.AUTOMATIC, second)), ("liveliness",)),
+        (RELIABLE, RELIABLE.replace(ownership=qos.EXCLUSIVE), ("ownership",)),
+        (RELIABLE, RELIABLE.replace(destination_order=qos.BY_SOURCE_TIMESTAMP), ("destination_order",)),
+        (RELIABLE, RELIABLE.replace(presentation=(qos.INSTANCE, False, True)), ("presentation",)),
+        (RELIABLE.replace(partition=("a",)), RELIABLE.replace(partition=("b*",)), ("partition",)),
+        (RELIABLE.replace(representation=(qos.XCDR2,)), RELIABLE, ("representation",)),
+        (BEST_EFFORT, LATCHED, ("reliability", "durability")),
+    ]
+    for offered, requested, names in cases:
+        network = Network()
+        one, other, writer, reader = pair(network, offered, requested)
+        network.run(1)
+        for host, remote in ((one, reader), (other, writer)):
+            (event,) = host.of(events.QosIncompatible)
+            assert event.policies == names
+            assert event.data.guid == remote.data.guid
+            assert host.of(events.EndpointMatched) == []
+
+
+def test_partitions_match_by_pattern() -> None:
+    network = Network()
+    _, _, writer, reader = pair(
+        network, RELIABLE.replace(partition=("ab1",)), RELIABLE.replace(partition=("x", "a*?"))
+    )
+    assert matched(network, writer, reader)
+
+
+def test_a_deleted_endpoint_unmatches() -> None:
+    network = Network(1, 0.2)
+    one, other, writer, reader = pair(network, RELIABLE, RELIABLE)
+    assert matched(network, writer, reader)
+    other.participant.delete_reader(reader, network.now)
+    assert network.run(20, lambda: not writer.proxies)
+    again = other.participant.create_reader("t", "T", RELIABLE, network.now)
+    assert matched(network, writer, again)
+    one.participant.delete_writer(writer, network.now)
+    assert network.run(20, lambda: not again.proxies)
+
+
+def test_endpoints_of_one_participant_match_each_other() -> None:
+    network = Network(3, 0.2)
+    host = network.host()
+    participant = host.participant
+    writer = participant.create_writer("t", "T", LATCHED, network.now)
+    writer.write(body(0), network.now)
+    reader = participant.create_reader("t", "T", LATCHED, network.now)
+    for number in range(1, 10):
+        writer.write(body(number), network.now)
+        network.run(0.01)
+    assert network.run(20, lambda: writer.acknowledged(10))
+    assert numbers(host) == list(range(10))
+    assert participant.spdp.remotes == {}
+    participant.delete_writer(writer, network.now)
+    assert reader.proxies == {}
+    assert participant._by_writer == {}
+    apart = network.host(match_own=False).participant
+    lonely = apart.create_writer("u", "T", RELIABLE, network.now)
+    apart.create_reader("u", "T", RELIABLE, network.now)
+    network.run(1)
+    assert lonely.proxies == {}
+
+
+def test_an_endpoint_may_have_a_locator_of_its_own() -> None:
+    network = Network()
+    one, other = network.host(), network.host()
+    writer = one.participant.create_writer("t", "T", RELIABLE, 0.0)
+    place = locator.udp4(other.address, 9999)
+    reader = other.participant.create_reader("t", "T", RELIABLE, 0.0, unicast=(place,))
+    assert matched(network, writer, reader)
+    assert writer.proxies[reader.data.guid].addresses == ((other.address, 9999),)
+    assert writer.proxies[reader.data.guid].data.unicast == (place,)
 
 
 def told(host: Host) -> "list[tuple[str, ...]]":
@@ -61,26 +136,3 @@ def test_what_does_not_match_is_told_again_only_where_it_is_for_another_reason()
     announce(writer.data.replace(qos=writer.qos.replace(ownership=qos.EXCLUSIVE)), network.now)
     network.run(1)
     assert told(other) == [("reliability",), ("reliability", "ownership")]
-
-
-def test_a_reader_may_be_deleted_by_its_sink_while_samples_wait_for_an_earlier_one() -> None:
-    network = Network()
-    one, other = network.host(), network.host()
-    writer = one.participant.create_writer("t", "T", RELIABLE, 0.0)
-    found: list[int] = []
-
-    def sink(proxy: "Any", value: "Any", time: "int | None") -> None:
-        found.append(value.sequence)
-        other.participant.delete_reader(reader, network.now)
-
-    reader = other.participant.create_reader("t", "T", RELIABLE, 0.0, sink=sink)
-    assert network.run(5, lambda: bool(writer.proxies and reader.proxies))
-    network.run(0.5)
-    (proxy,) = reader.proxies.values()
-    for sequence in (2, 3):
-        value = Data(ENTITYID_UNKNOWN, writer.entity_id, sequence, b"\0\1\0\0")
-        reader.handle_data(proxy, value, None, network.now)
-    reader.handle_heartbeat(proxy, Heartbeat(ENTITYID_UNKNOWN, writer.entity_id, 4, 4, 99), network.now)
-    assert found == [2]
-    assert other.of(events.SamplesLost) == []
-    assert other.participant._common.holding.left == other.participant.limits.all_held_bytes
