@@ -137,9 +137,8 @@ def load(path: str | PathLike[str], dialect: Dialect | None = None) -> Types:
     for one in both:
         try:
             found = registry(one).load(path)
-        except (
-            DefinitionError
-        ) as error:  # a package's or a file's name is not legal there, or nothing is there at all
+        except DefinitionError as error:
+            # A package's or a file's name is not legal there, or nothing is there at all.
             if one == dialect:
                 raise
             faults.append(error)
@@ -159,23 +158,22 @@ def message_class_of(name: str, definition: str) -> type[Message]:
     The class is a new one each time, and so are those of its nested types: what a peer says of a name changes nothing for
     others in this process. Raises DefinitionError where the text is wrong, or lacks a type that is not bundled.
     """
-    from roslet.idl import Registry
-
-    own = Registry("ros1", None)
-    own.load_full_text(name, definition)
-    return _Scope(own).message(name)
+    return _told_class("ros1", name, definition)
 
 
 def described_class(name: str, description: dict[str, Any]) -> type[Message]:
-    """The ROS 2 class of a message that a peer described (`definition_text` says how).
-
-    Like `message_class_of`, it comes before all others of its name. Raises DefinitionError where the description is wrong or
-    incomplete.
-    """
+    """The ROS 2 class of a message that a peer described (`definition_text` says how); as `message_class_of`."""
     from roslet.idl.described import definition_text
 
-    _forget("ros2", registry("ros2").load_full_text(name, definition_text(description)))
-    return message_class("ros2", name)
+    return _told_class("ros2", name, definition_text(description))
+
+
+def _told_class(dialect: Dialect, name: str, text: str) -> type[Message]:
+    from roslet.idl import Registry
+
+    own = Registry(dialect, None)
+    own.load_full_text(name, text)
+    return _Scope(own).message(name)
 
 
 def _guess(path: str, names: list[TypeName]) -> Dialect:

@@ -16,6 +16,9 @@ WRITER, READER = b"\0\0\x11\x03", b"\0\0\x22\x04"
 ANYONE = bytes(4)
 PARTICIPANT = b"\0\0\1\xc1"
 
+LAST = 0x7FFFFFFFFFFFFFFF
+"""The last sequence number."""
+
 FOREVER = (0x7FFFFFFF, 0xFFFFFFFF)
 
 

@@ -5,8 +5,10 @@ Its arithmetic is its own, so that runs repeat on every interpreter. Runs on Mic
 
 import heapq
 
+from roslet.engine.rtps import events
 from roslet.engine.rtps.participant import Participant
-from roslet.wire.rtps import locator
+from roslet.wire.rtps import locator, qos
+from roslet.wire.rtps.qos import Qos
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -14,6 +16,11 @@ if TYPE_CHECKING:
 
 GROUP = ("239.255.0.1", 7400)
 MAX_STEPS = 400000
+
+BLOCKING = 100000000
+RELIABLE = Qos((qos.RELIABLE, BLOCKING), history=(qos.KEEP_LAST, 1000))
+LATCHED = Qos((qos.RELIABLE, BLOCKING), qos.TRANSIENT_LOCAL, (qos.KEEP_LAST, 5))
+BEST_EFFORT = Qos((qos.BEST_EFFORT, BLOCKING), history=(qos.KEEP_LAST, 10))
 
 
 class Dice:
@@ -188,3 +195,26 @@ class Network:
             self.now = max(self.now, at)
             self._step()
         raise AssertionError("no end after %d steps, at %g s" % (self.max_steps, self.now))
+
+
+def body(number: int, size: int = 12) -> bytes:
+    return b"\0\1\0\0" + number.to_bytes(4, "little") + bytes([number & 255]) * (size - 8)
+
+
+def numbers(host: Host) -> "list[int]":
+    return [int.from_bytes(one.payload[4:8], "little") for one in host.of(events.SampleReceived)]
+
+
+def pair(network: Network, offered: "Any", requested: "Any") -> "Any":
+    one, other = network.host(), network.host()
+    writer = one.participant.create_writer("t", "T", offered, network.now)
+    reader = other.participant.create_reader("t", "T", requested, network.now)
+    return one, other, writer, reader
+
+
+def matched(network: Network, writer: "Any", reader: "Any") -> bool:
+    return network.run(30, lambda: bool(writer.proxies and reader.proxies))
+
+
+def leased(kind: int, seconds: float) -> "Any":
+    return RELIABLE.replace(liveliness=(kind, int(seconds * 1000000000)))

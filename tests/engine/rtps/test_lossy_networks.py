@@ -115,7 +115,7 @@ def large(weather: Weather, seed: int) -> tuple[float, float]:
     took = network.now - end
     assert network.run(60, lambda: writer.acknowledged(LARGE))
     check_all_arrived(other, LARGE, LARGE_SIZE)
-    assert other.participant._budget.left == other.participant.limits.assembly_bytes
+    assert other.participant._common.assembling.left == other.participant.limits.assembly_bytes
     fragments = LARGE * -(-LARGE_SIZE // FRAGMENT)
     return took, (network.sent - before) / fragments
 

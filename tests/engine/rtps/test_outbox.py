@@ -2,8 +2,7 @@
 
 import pytest
 
-from engine.rtps.network import Network
-from engine.rtps.test_participants import RELIABLE, body, matched, numbers
+from engine.rtps.network import RELIABLE, Network, body, matched, numbers
 from roslet.engine.rtps.outbox import MAX_MARKS, MAX_WINDOW, PACE, WHOLE, WINDOW, Flow, Outbox
 from roslet.wire.rtps import data_frag, heartbeat_frag, message, qos
 
@@ -149,7 +148,7 @@ def test_lost_fragments_are_asked_for_while_the_rest_is_on_its_way() -> None:
             writer.write(body(number, 1000000), network.now)
         assert network.run(10, lambda writer=writer: writer.acknowledged(5))
         assert numbers(other) == list(range(5))
-        assert other.participant._budget.left == other.participant.limits.assembly_bytes
+        assert other.participant._common.assembling.left == other.participant.limits.assembly_bytes
         assert not writer._repairs.busy
         assert writer._repairs._mending == set()
 

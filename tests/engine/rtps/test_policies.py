@@ -4,8 +4,7 @@
 
 import pytest
 
-from engine.rtps.network import Network
-from engine.rtps.test_participants import LATCHED, RELIABLE, body, leased, matched, numbers, pair
+from engine.rtps.network import LATCHED, RELIABLE, Network, body, leased, matched, numbers, pair
 from roslet.engine.rtps import events
 from roslet.engine.rtps.history import HistoryFull
 from roslet.engine.rtps.instances import ALIVE, NOT_ALIVE_DISPOSED, NOT_ALIVE_NO_WRITERS, STATES
@@ -182,6 +181,73 @@ def test_a_keep_all_writer_holds_no_more_octets_than_its_limit() -> None:
     assert network.run(1, lambda: not writer.full(60000))
 
 
+def test_an_automatic_writer_lives_as_long_as_its_participant() -> None:
+    network = Network()
+    _, other, writer, reader = pair(network, leased(qos.AUTOMATIC, 0.5), leased(qos.AUTOMATIC, 1.0))
+    assert matched(network, writer, reader)
+    network.run(10)
+    assert other.of(events.LivelinessLost) == []
+    network.apart.add(other.address)
+    network.run(2)
+    assert len(other.of(events.LivelinessLost)) == 1
+    network.apart.clear()
+    network.run(2)
+    assert len(other.of(events.LivelinessRegained)) == 1
+    assert len(other.of(events.LivelinessLost)) == 1
+
+
+def test_a_manual_writer_must_say_that_it_lives() -> None:
+    for kind in (qos.MANUAL_BY_PARTICIPANT, qos.MANUAL_BY_TOPIC):
+        network = Network()
+        one, other, writer, reader = pair(network, leased(kind, 1.0), leased(kind, 1.0))
+        assert matched(network, writer, reader)
+        for number in range(4):
+            network.run(0.7)
+            if number == 1:
+                writer.write(body(1), network.now)
+            elif kind == qos.MANUAL_BY_TOPIC:
+                writer.assert_liveliness(network.now)
+            else:
+                one.participant.assert_liveliness(network.now)
+        assert other.of(events.LivelinessLost) == []
+        network.run(1.5)
+        assert len(other.of(events.LivelinessLost)) == 1
+        writer.write(body(2), network.now)
+        network.run(0.1)
+        assert len(other.of(events.LivelinessRegained)) == 1
+
+
+def test_an_expired_sample_is_not_sent_to_a_late_reader() -> None:
+    network = Network()
+    one = network.host()
+    writer = one.participant.create_writer("t", "T", LATCHED.replace(lifespan=1000000000), network.now)
+    writer.write(body(0), network.now)
+    network.run(0.7)
+    writer.write(body(1), network.now)
+    network.run(0.7)
+    other = network.host()
+    reader = other.participant.create_reader("t", "T", LATCHED, network.now)
+    assert matched(network, writer, reader)
+    network.run(1)
+    assert numbers(other) == [1]
+    assert writer.acknowledged(2)
+
+
+def test_a_missed_deadline_is_told_at_both_ends_each_period() -> None:
+    network = Network()
+    policies = RELIABLE.replace(deadline=500000000)
+    one, other, writer, reader = pair(network, policies, policies)
+    assert matched(network, writer, reader)
+    network.run(2)
+    for number in range(5):
+        writer.write(body(number), network.now)
+        network.run(0.3)
+    assert one.of(events.DeadlineMissed) == other.of(events.DeadlineMissed) == []
+    network.run(1.3)
+    assert one.of(events.DeadlineMissed) == [events.DeadlineMissed(writer.entity_id)] * 3
+    assert other.of(events.DeadlineMissed) == [events.DeadlineMissed(reader.entity_id)] * 3
+
+
 def test_deadlines_are_those_of_instances() -> None:
     network = Network()
     policies = RELIABLE.replace(deadline=SECOND // 2)
@@ -273,13 +339,15 @@ def test_no_peer_takes_all_of_the_room_for_fragments() -> None:
         for sequence in range(1, 9):
             piece = DataFrag(reader.entity_id, one.entity_id, sequence, 1, 1, 1000, 60000, bytes(1000))
             victim.participant.receive_datagram(front + piece.emit(), ("10.0.0.9", 1), network.now)
-    assert victim.participant._budget.left == 239940  # a sample, and an octet for each of its fragments
+    assert (
+        victim.participant._common.assembling.left == 239940
+    )  # a sample, and an octet for each of its fragments
     assert victim.participant.counters["assembly-bytes-full"] == 39
     writer.write(body(7, 90000), network.now)
     assert network.run(5, lambda: writer.acknowledged(1))
     assert numbers(victim) == [7]
     assert network.run(30, lambda: len(reader.proxies) == 1)
-    assert victim.participant._budget.left == 300000
+    assert victim.participant._common.assembling.left == 300000
 
 
 def test_no_peer_takes_all_of_the_room_for_samples_that_came_too_early() -> None:

@@ -2,8 +2,7 @@
 
 import pytest
 
-from engine.rtps.network import GROUP, Network
-from engine.rtps.test_participants import RELIABLE, body, matched, numbers, pair
+from engine.rtps.network import GROUP, RELIABLE, Network, body, matched, numbers, pair
 from roslet.engine.rtps import events
 from roslet.wire.rtps import header, locator, message, number_set
 from roslet.wire.rtps.ack_nack import AckNack

@@ -66,7 +66,7 @@ class Matching:
         self._networks = networks
         if self._match_own:
             for one in list(self.writers.values()) + list(self.readers.values()):
-                self._discovered(one.data, now)
+                self._discovered(one.data, one.data, now)
 
     # -- ours
 
@@ -118,7 +118,7 @@ class Matching:
     def participant_changed(self, prefix: bytes, now: float) -> None:
         """Its locators may be others."""
         for endpoint in list(self._of.get(prefix, {}).values()):
-            self._discovered(endpoint, now)
+            self._discovered(endpoint, endpoint, now)
 
     def participant_lost(self, prefix: bytes, builtin_writers: "list[bytes]", now: float) -> None:
         """It is gone with all its endpoints."""
@@ -137,7 +137,8 @@ class Matching:
         wants_writer = local == guid.ENTITYID_SEDP_BUILTIN_PUBLICATIONS_READER
         if found.guid[:12] != prefix or found.writer != wants_writer:
             raise ProtocolError("endpoint-of-another-participant")
-        if self.endpoints.get(found.guid) == found:
+        before = self.endpoints.get(found.guid)
+        if before == found:
             return
         known = self._of.setdefault(prefix, {})
         if found.guid not in known and len(known) >= self._limits.endpoints:
@@ -145,7 +146,7 @@ class Matching:
         self._account(found.guid, len(value.payload))
         known[found.guid] = self.endpoints[found.guid] = found
         self._deliver(events.EndpointDiscovered(found))
-        self._discovered(found, now)
+        self._discovered(found, before, now)
 
     def _account(self, endpoint: bytes, size: int) -> None:
         """This announcement takes the place of the one before. Raises ProtocolError where it is too much."""
@@ -159,13 +160,14 @@ class Matching:
             self._budget.take(prefix, before)
         raise ProtocolError("discovery-bytes-full")
 
-    def _discovered(self, found: "EndpointData", now: float) -> None:
+    def _discovered(self, found: "EndpointData", before: "EndpointData | None", now: float) -> None:
+        """Consider an endpoint for all of ours; `before` is what was known of it."""
         if found.writer:
             for reader in list(self.readers.values()):
-                self._consider_writer(reader, found, now)
+                self._consider_writer(reader, found, now, before)
         else:
             for writer in list(self.writers.values()):
-                self._consider_reader(writer, found, now)
+                self._consider_reader(writer, found, now, before)
 
     def _lost(self, lost: bytes, now: float) -> None:
         found = self.endpoints.pop(lost, None)
@@ -206,7 +208,9 @@ class Matching:
         remote = self._remotes.get(found.guid[:12])
         return remote.data.vendor_id if remote is not None else VENDORID_UNKNOWN
 
-    def _consider_reader(self, writer: "Writer", found: "EndpointData", now: float) -> None:
+    def _consider_reader(
+        self, writer: "Writer", found: "EndpointData", now: float, before: "EndpointData | None" = None
+    ) -> None:
         if found.topic != writer.data.topic or found.type_name != writer.data.type_name:
             return
         if writer.accepts is not None and not writer.accepts(found):
@@ -215,17 +219,21 @@ class Matching:
         if policies:
             if writer.unmatch(found.guid, now) is not None:
                 self._deliver(events.EndpointUnmatched(writer.entity_id, found))
-            self._deliver(events.QosIncompatible(writer.entity_id, found, policies))
+            if before is None or incompatible(writer.qos, before.qos) != policies:
+                self._deliver(events.QosIncompatible(writer.entity_id, found, policies))
         elif writer.match(found, self._addresses(found), now, self._vendor(found)):
             self._deliver(events.EndpointMatched(writer.entity_id, found))
 
-    def _consider_writer(self, reader: "Reader", found: "EndpointData", now: float) -> None:
+    def _consider_writer(
+        self, reader: "Reader", found: "EndpointData", now: float, before: "EndpointData | None" = None
+    ) -> None:
         if found.topic != reader.data.topic or found.type_name != reader.data.type_name:
             return
         policies = incompatible(found.qos, reader.qos)
         if policies:
             self._drop_writer(reader, found, now)
-            self._deliver(events.QosIncompatible(reader.entity_id, found, policies))
+            if before is None or incompatible(before.qos, reader.qos) != policies:
+                self._deliver(events.QosIncompatible(reader.entity_id, found, policies))
         elif reader.match(found, self._addresses(found), now, self._vendor(found)):
             self.route(reader, found.guid)
             self._liveliness.watch(reader.entity_id, found, now)

@@ -106,7 +106,6 @@ class Participant:
         self._common.here = self._is_here
         self._count = self._common.count
         self._schedule = self._common.schedule
-        self._budget = self._common.assembling
         self._asserting = Alarm(self._schedule, self._assert_automatic)
         self._asserted = NEVER
         self.spdp = Spdp(

@@ -448,6 +448,8 @@ class Reader:
         """Deliver what is held below `first`, in order, and go on from there."""
         missing = first - proxy.next
         for sequence in sorted([number for number in proxy.held if number < first]):
+            if sequence not in proxy.held:
+                return  # the sink has deleted this reader
             one = self._take_held(proxy, sequence)
             missing -= 1
             if one is not None:

@@ -5,7 +5,7 @@ belongs to the writer, so a sample goes once to each distinct address, to whiche
 """
 
 from roslet.engine.rtps.events import DeadlineMissed, LivelinessLost, LivelinessRegained, WriterReady
-from roslet.engine.rtps.history import Change, History
+from roslet.engine.rtps.history import Change, History, HistoryFull
 from roslet.engine.rtps.outbox import Flow
 from roslet.engine.rtps.reader_proxy import ReaderProxy, addresses_for_all
 from roslet.engine.rtps.repairs import Repairs
@@ -178,8 +178,11 @@ class Writer:
             if self._lifespan is not None:
                 change.expires = now + self._lifespan
             if kept:
-                self._wanted = self._wanted or self.history.full(size, change.key)
-                self.history.add(change)
+                try:
+                    self.history.add(change)
+                except HistoryFull:
+                    self._wanted = True
+                    raise
         if self._strangers:
             self._greet(sequence)
         self.last = sequence

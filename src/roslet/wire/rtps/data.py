@@ -9,6 +9,7 @@ octetsToInlineQos counts from behind itself; what it skips beyond 16 is from the
 import struct
 
 from roslet.record import Record
+from roslet.wire.primitives import bytes_packer
 from roslet.wire.rtps import parameter_list
 from roslet.wire.rtps.fields import INT, OCTETS, Field, Fixed
 from roslet.wire.rtps.submessage import DATA, FLAG_E, INFO_TS, invalid, truncated
@@ -119,10 +120,11 @@ class Preface:
         self, header: bytes, writer_id: bytes, reader_id: bytes = b"\0\0\0\0", info_dst: bytes = b""
     ) -> None:
         front = bytes(header) + info_dst + bytes((INFO_TS, FLAG_E, 8, 0))
-        self._form = "<%dsIIBBH12siI" % len(front)
+        form = "<%dsIIBBH12siI" % len(front)
+        self._pack = bytes_packer(form)
         self._front = front
         self._middle = struct.pack("<HH", 0, _TO_INLINE_QOS) + reader_id + writer_id
-        self.size = struct.calcsize(self._form)
+        self.size = struct.calcsize(form)
 
     def emit(
         self, sequence: int, payload_size: int, seconds: int, fraction: int, flags: int = FLAG_D | FLAG_E
@@ -132,8 +134,7 @@ class Preface:
         A payload that is too long for the 16-bit length gets length 0, "to the end of the message".
         """
         length = 20 + payload_size
-        return struct.pack(
-            self._form,
+        return self._pack(
             self._front,
             seconds,
             fraction,
