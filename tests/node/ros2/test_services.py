@@ -10,6 +10,8 @@ import pytest
 import roslet
 from nodes import wait_until
 from ros2_nodes import Ros2Nodes
+from roslet.engine.rtps.history import HistoryFull
+from roslet.node.ros2 import services
 
 SET_BOOL = "std_srvs/srv/SetBool"
 
@@ -109,3 +111,23 @@ def test_a_predicate_may_ask_whether_a_service_is_there(make2: Ros2Nodes) -> Non
     node.timer(0.1, lambda: node.service("/late", "std_srvs/srv/Trigger", lambda request: None), once=True)
     assert other.spin_until(there, 5.0)
     assert asked[0] is False and client.ready()
+
+
+def test_requests_that_nobody_serves_and_replies_that_nobody_takes_are_counted(
+    make2: Ros2Nodes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    server, caller = make2("server"), make2("client", "--enclave", "/k")
+    service: Any = server.service("/ask", SET_BOOL, answer)
+    client = caller.client("/ask", SET_BOOL)
+    assert client.wait(timeout=8)
+    monkeypatch.setattr(services, "MAX_REQUESTS", 1)
+    calls = [client.call_async(data=True) for _ in range(2)]
+    reactor = server.reactor
+    assert reactor.run_until(lambda: server.counters.get("requests-full") == 1, 8, user=False)
+
+    def full(*given: Any) -> bool:
+        raise HistoryFull("full")
+
+    monkeypatch.setattr(service._server, "reply", full)
+    wait_until(lambda: server.counters.get("reply-history-full") == 1, "the reply is dropped")
+    assert not any(one.done() for one in calls)
