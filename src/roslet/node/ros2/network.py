@@ -366,14 +366,6 @@ class Ros2Network(Network):
         name, namespace = self.graph.node_of(gid)
         return f"{'' if namespace == '/' else namespace}/{name}"
 
-    def hash_of(self, gid: bytes) -> str:
-        """The type hash that an endpoint announced, "" where it announced none."""
-        with self.reactor.lock:
-            for one in self.graph.endpoints():
-                if one.gid == gid:
-                    return one.type_hash
-        return ""
-
     def topics(self) -> dict[str, str]:
         with self.reactor.lock:
             return {topic: types[0] for topic, types in self.graph.topics().items()}
