@@ -320,3 +320,14 @@ def test_datagrams_that_the_kernel_does_not_take_are_counted(make2: Ros2Nodes) -
     with node.reactor.lock:
         node._network.shell.domain._send((b"x",), [("255.255.255.255", 9)])  # SO_BROADCAST is not set
     assert node.counters["datagram-not-sent"] == 1
+
+
+def test_a_node_beyond_the_bound_leaves_nothing_behind(make2: Ros2Nodes) -> None:
+    first: Any = make2("first")
+    process = first._network.process
+    process.shell.context._max_nodes = 1
+    with pytest.raises(ValueError, match="at most 1 nodes"):
+        make2("second")
+    assert process.users == 1
+    first.close()
+    assert process.users == 0 and process.shell._closed

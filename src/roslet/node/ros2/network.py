@@ -85,9 +85,13 @@ class Ros2Network(Network):
     def open(self) -> None:
         self.process = join(self.reactor, self._settings, self.arguments.enclave or "/", self.node._note)
         shell = self.shell
-        with self.reactor.lock:
-            self.handle = shell.context.add_node(self.base_name, self.namespace, self.reactor.now())
-            shell.flush()
+        try:
+            with self.reactor.lock:
+                self.handle = shell.context.add_node(self.base_name, self.namespace, self.reactor.now())
+                shell.flush()
+        except ValueError:
+            self.process.leave()
+            raise
 
     @property
     def shell(self) -> Ros2Shell:
