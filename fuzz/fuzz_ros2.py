@@ -1,5 +1,5 @@
 """Invariant: whatever discovery infos, USER_DATA, requests and replies come, no exception leaves a Context and its services,
-and what they hold stays within their bounds.
+what they hold stays within their bounds, and what they drop has a reason that is explained.
 
     python fuzz/fuzz_ros2.py [libFuzzer options] [corpus]     coverage-guided; needs atheris
     python fuzz/fuzz_ros2.py --smoke N                        N seeded random inputs; needs nothing
@@ -18,8 +18,10 @@ from roslet.engine.ros2 import context as contexts
 from roslet.engine.ros2 import discovery_info, services
 from roslet.engine.ros2.context import Context
 from roslet.engine.ros2.discovery_info import NodeEntities, ParticipantEntities
+from roslet.engine.ros2.reasons import REASONS
 from roslet.engine.ros2.services import ServiceClient, ServiceServer
 from roslet.engine.rtps import events
+from roslet.engine.rtps import reasons as rtps
 from roslet.engine.rtps.participant import Participant
 from roslet.engine.rtps.reader import WriterProxy
 from roslet.wire.rtps import participant_data, qos
@@ -151,6 +153,9 @@ def check(data: bytes) -> None:
         at = context.deadline()
         if at is not None and at > now + max(contexts.BATCH, services.PATIENCE):
             raise AssertionError("deadline")
+    unknown = set(participant.counters) - set(REASONS) - set(rtps.REASONS)
+    if unknown:
+        raise AssertionError(f"unexplained reasons {unknown}")
     COUNTED.update(participant.counters)
 
 

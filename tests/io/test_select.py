@@ -176,6 +176,24 @@ def test_a_second_exception_of_a_turn_is_printed(loop: Reactor, capfd: pytest.Ca
     assert "second" in capfd.readouterr().err
 
 
+def test_a_wait_within_a_callback_does_not_raise_what_another_callback_raised(loop: Reactor) -> None:
+    ended: list[bool] = []
+    answered: list[int] = []
+
+    def fail() -> None:
+        raise ValueError("of another")
+
+    def wait() -> None:
+        loop.call_soon(lambda: answered.append(1))
+        ended.append(loop.run_until(lambda: answered, 5.0, user=False))
+
+    loop.call_soon(fail, user=True)
+    loop.call_soon(wait, user=True)
+    with pytest.raises(ValueError, match="of another"):
+        loop.run_until(lambda: False, 5.0)
+    assert ended == [True]
+
+
 def test_the_background_thread_outlives_a_slip(loop: Reactor, capfd: pytest.CaptureFixture[str]) -> None:
     write, seen = pipe(loop)
 

@@ -128,3 +128,18 @@ def test_a_message_whose_fields_the_other_network_has_not_is_refused_by_name(net
             TypeError, match=r"sensor_msgs/(msg/)?CameraInfo has no field [dD], which the other"
         ):
             publisher.publish(message)
+
+
+def test_a_node_that_is_closed_in_a_callback_is_closed_whatever_another_callback_raised(network: str) -> None:
+    node = roslet.Node("node", network=network)
+    publisher = node.publisher("/chatter", "std_msgs/String")
+
+    def fail() -> None:
+        raise ValueError("of another")
+
+    node.reactor.call_soon(fail, user=True)
+    node.reactor.call_soon(node.close, user=True)
+    with pytest.raises(ValueError, match="of another"):
+        node.spin(5)
+    with pytest.raises(roslet.NodeClosed):
+        publisher.publish(data="x")

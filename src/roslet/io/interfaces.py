@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import socket
 import struct
-from typing import NamedTuple
 
 from roslet.errors import Unreachable
+from roslet.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -36,14 +36,18 @@ _SIOCGIFFLAGS = 0x8913
 _UP, _LOOPBACK, _RUNNING, _MULTICAST = 0x1, 0x8, 0x40, 0x1000
 
 
-class Interface(NamedTuple):
+class Interface(Record):
     """One IPv4 address of an interface. `number`: the kernel's index, 0 where it is not known; `bits`: the prefix length."""
 
-    name: str
-    number: int
-    address: str
-    bits: int
-    multicast: bool
+    _fields = ("name", "number", "address", "bits", "multicast")
+    __slots__ = _fields
+
+    def __init__(self, name: str, number: int, address: str, bits: int, multicast: bool) -> None:
+        self.name = name
+        self.number = number
+        self.address = address
+        self.bits = bits
+        self.multicast = multicast
 
     @property
     def loopback(self) -> bool:

@@ -230,7 +230,8 @@ class Reactor:
         """Serve until `predicate()` is true or `timeout` seconds have passed; says which (true: the predicate).
 
         With `user` false only control traffic is served. Called from within a callback it serves control traffic in the
-        same way, so that a callback may wait for a service. An exception that a callback raised is raised here.
+        same way, so that a callback may wait for a service. An exception that a callback raised is raised here, or where
+        the loop around that callback was entered.
         """
         if predicate():
             return True
@@ -313,7 +314,9 @@ class Reactor:
             if yields and self._callers:
                 return None
             turn(end, user)
-            if self._error is not None:
+            # A wait within a callback, which neither serves users nor yields, leaves what another callback has raised to
+            # the loop around it: to raise it there would break off whatever waits, such as the closing of a node.
+            if self._error is not None and (user or yields):
                 error, self._error = self._error, None
                 raise error
         return True

@@ -320,6 +320,10 @@ class Domain:
         name = f"{what}-{os.strerror(error.errno or 0).lower().replace(' ', '-')}"
         self.errors[name] = self.errors.get(name, 0) + 1
 
+    def _count(self, reason: str) -> None:
+        counters = self.participant.counters
+        counters[reason] = counters.get(reason, 0) + 1
+
     # -- the loop
 
     def _reader_of(self, one: socket.socket) -> Callable[[int], None]:
@@ -411,6 +415,7 @@ class Domain:
                 except OSError as error:
                     # As good as lost on the way; reliable writers send it again.
                     self._failed("send", error)
+                    self._count("datagram-not-sent")
 
     def _way(self, address: Address) -> Sequence[socket.socket]:
         """The sockets that reach an address: the user socket, or one for each interface where it is a group."""

@@ -87,7 +87,7 @@ class Node(GraphApi):
         _open_nodes.add(self)
         try:
             self._network.begin()
-        except BaseException:
+        except BaseException:  # of Ctrl-C, too: what is open must not stay open behind a node that nobody has
             self.close()
             raise
 

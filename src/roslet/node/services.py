@@ -135,7 +135,8 @@ class Client:
         raise NotImplementedError
 
     def close(self) -> None:
-        """Call no more. Closing twice is allowed."""
+        """Call no more; a call that cannot be answered any more ends with an error: on ROS 2 NodeClosed, on ROS 1, where
+        only persistent clients lose theirs, Unreachable. Closing twice is allowed."""
         raise NotImplementedError
 
     def __enter__(self) -> Self:

@@ -191,3 +191,24 @@ def test_a_status_may_be_there_before_the_answer() -> None:
     goals.told([(uuid(1), a.EXECUTING)])
     goals.answered(uuid(1), True)
     assert goal.status == a.EXECUTING
+
+
+def test_goals_whose_results_nobody_asks_for_make_room_when_they_have_ended() -> None:
+    goals = ClientGoals(max_goals=2)
+    for number in range(1, 6):
+        goals.send(uuid(number))
+        goals.answered(uuid(number), True)
+        goals.told([(uuid(number), a.SUCCEEDED)])
+    goals.send(uuid(6))
+    with pytest.raises(ValueError, match="2 goals have not ended"):
+        goals.answered(uuid(6), True)
+        goals.send(uuid(7))
+        goals.send(uuid(8))
+
+
+def test_refusals_are_counted_where_the_owner_counts() -> None:
+    counters: dict[str, int] = {}
+    goals = ServerGoals(counters=counters)
+    goals.accept(uuid(1), 1)
+    assert goals.refusal(uuid(1)) == "goal-id-repeated"
+    assert counters == {"goal-id-repeated": 1}

@@ -12,6 +12,8 @@ from roslet.engine.ros2.graph import EndpointInfo, NodeInfo
 from roslet.engine.rtps import events
 from roslet.errors import InvalidName, NodeClosed
 from roslet.names import REPLY, REQUEST, dds_service_types, dds_topic, dds_type
+from roslet.wire.rtps import qos
+from roslet.wire.rtps.data import FLAG_D
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -284,3 +286,28 @@ def test_a_closed_context_has_told_that_its_nodes_are_gone() -> None:
     one.context.close(network.now)
     network.run(0.01)
     assert run(network, [other], 0.01, lambda: not other.graph.nodes())
+
+
+def test_an_info_of_one_who_has_just_gone_is_dropped_and_counted() -> None:
+    network = Network()
+    one = Member(network)
+    peer, _, _ = _teller(network, GID, contexts.WRITER_QOS.user_data)
+    assert run(network, [one], 5, lambda: len(one.graph.nodes()) == 1)
+    prefix = peer.participant.guid_prefix
+    one.graph.participant_lost(prefix)
+    info = ParticipantEntities(prefix + b"\0\0\1\xc1", (NodeEntities("/", "late"),)).emit()
+    reader = one.context._reader
+    assert reader is not None
+    sample = events.SampleReceived(reader.entity_id, prefix + b"\0\0\1\3", 9, info, None, FLAG_D, b"", True)
+    assert one.context.handle_event(sample, network.now)
+    assert one.participant.counters == {"discovery-info-of-unknown-participant": 1}
+
+
+def test_one_who_offers_it_with_another_qos_is_counted() -> None:
+    network = Network()
+    one = Member(network)
+    best = contexts.WRITER_QOS.replace(reliability=(qos.BEST_EFFORT, qos.DEFAULT_BLOCKING))
+    other = network.host().participant
+    other.create_writer(discovery_info.TOPIC, discovery_info.TYPE, best, network.now)
+    counters = one.participant.counters
+    assert run(network, [one], 5, lambda: counters.get("discovery-info-incompatible") == 1)

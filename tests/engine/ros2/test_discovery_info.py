@@ -107,3 +107,11 @@ def test_gids_are_bounded_over_all_nodes() -> None:
     payload = ParticipantEntities(bytes(16), nodes + (NodeEntities("/", "c", guids[:1]),)).emit()  # noqa: RUF005
     with pytest.raises(ProtocolError, match="discovery-info-too-large"):
         parse(payload, GID)
+
+
+def test_octets_where_a_long_gid_has_zeros_are_refused() -> None:
+    payload = bytearray(OLD_NODE)
+    payload[4 + GID] = 1
+    with pytest.raises(ProtocolError) as caught:
+        parse(bytes(payload), OLD_GID)
+    assert caught.value.reason == "discovery-info-gid"

@@ -7,6 +7,7 @@ from roslet.engine.ros2.graph import Graph
 from roslet.wire.rtps.endpoint_data import EndpointData
 from roslet.wire.rtps.guid import ENTITYID_PARTICIPANT
 from roslet.wire.rtps.participant_data import ParticipantData
+from roslet.wire.rtps.qos import Qos
 
 pytestmark = pytest.mark.micropython
 
@@ -39,3 +40,13 @@ def test_a_participant_that_is_not_of_ros_has_nothing_to_tell() -> None:
     graph = Graph()
     graph.participant_discovered(participant(b""))
     assert graph.complete()
+
+
+def test_the_hash_of_an_endpoint_is_what_it_announced() -> None:
+    graph = Graph()
+    assert graph.hash_of(WRITER) == ""
+    policies = Qos(user_data=b"typehash=RIHS01_00;")
+    graph.endpoint_discovered(EndpointData(WRITER, "rt/chatter", "std_msgs::msg::dds_::String_", policies))
+    assert graph.hash_of(WRITER) == "RIHS01_00"
+    graph.endpoint_lost(WRITER)
+    assert graph.hash_of(WRITER) == ""

@@ -12,6 +12,7 @@ import roslet
 from nodes import serve, wait_until
 from ros2_nodes import Ros2Nodes
 from roslet.engine.ros2.actions import InvalidTransition
+from roslet.errors import InvalidMessage
 from roslet.node.ros2.actions import GoalRejected, ServerGoal
 
 FIBONACCI = "example_interfaces/action/Fibonacci"
@@ -129,3 +130,58 @@ def test_a_call_without_a_server_says_in_time_that_there_is_none(make2: Ros2Node
     assert not client.wait(0.05)
     with pytest.raises(roslet.CallTimeout, match="nobody"):
         client.send_goal(order=1, timeout=0.1)
+
+
+def test_a_displaced_goal_is_forgotten_and_counted(make2: Ros2Nodes) -> None:
+    node = make2("node")
+    server: Any = node.action_server("fibonacci", FIBONACCI, fibonacci, result_timeout=None)
+    server._goals.max_goals = 2
+    client = node.action_client("fibonacci", FIBONACCI)
+    for _ in range(4):
+        assert client.send_goal(order=2, timeout=5).result(5)[0] == "SUCCEEDED"
+    assert len(server.goals) == 2
+    assert node.counters["result-displaced"] == 2
+
+
+def test_a_goal_that_ends_while_it_is_asked_whether_it_may_be_canceled_is_not_canceled(
+    make2: Ros2Nodes,
+) -> None:
+    node = make2("node")
+    taken: list[ServerGoal] = []
+
+    def end(goal: ServerGoal) -> bool:
+        goal.succeed(sequence=[1])
+        return True
+
+    node.action_server("fibonacci", FIBONACCI, accepted=taken.append, on_cancel=end)
+    goal = node.action_client("fibonacci", FIBONACCI).send_goal(order=2, timeout=5)
+    wait_until(lambda: taken, "it is handed over")
+    taken[0].execute()
+    assert not goal.cancel(5)
+    assert goal.result(5)[0] == "SUCCEEDED"
+
+
+def test_goals_that_are_given_up_or_cannot_be_sent_are_forgotten(make2: Ros2Nodes) -> None:
+    client: Any = make2("node").action_client("nobody", FIBONACCI)
+    with pytest.raises(roslet.CallTimeout):
+        client.send_goal(order=1, timeout=0.05)
+    with pytest.raises(InvalidMessage):
+        client.send_goal(order=1 << 40, timeout=0.05)
+    assert len(client._goals) == 0
+    assert all(future.done() for _, future in client._send._waiting)
+
+
+def test_a_node_that_closes_meanwhile_is_said_to_be_closed(make2: Ros2Nodes) -> None:
+    node = make2("node")
+    client = node.action_client("nobody", FIBONACCI)
+    network: Any = node._network
+    goodbye = network.say_goodbye
+
+    def slowly() -> None:
+        time.sleep(0.2)
+        goodbye()
+
+    network.say_goodbye = slowly
+    threading.Timer(0.05, node.close).start()
+    with pytest.raises(roslet.NodeClosed):
+        client.send_goal(order=1)

@@ -10,6 +10,9 @@ import pytest
 import roslet
 from nodes import wait_until
 from ros2_nodes import Ros2Nodes
+from roslet.engine.rtps.history import HistoryFull
+from roslet.node.future import Future
+from roslet.node.ros2 import services
 
 SET_BOOL = "std_srvs/srv/SetBool"
 
@@ -109,3 +112,59 @@ def test_a_predicate_may_ask_whether_a_service_is_there(make2: Ros2Nodes) -> Non
     node.timer(0.1, lambda: node.service("/late", "std_srvs/srv/Trigger", lambda request: None), once=True)
     assert other.spin_until(there, 5.0)
     assert asked[0] is False and client.ready()
+
+
+def test_requests_that_nobody_serves_and_replies_that_nobody_takes_are_counted(
+    make2: Ros2Nodes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    server, caller = make2("server"), make2("client", "--enclave", "/k")
+    service: Any = server.service("/ask", SET_BOOL, answer)
+    client = caller.client("/ask", SET_BOOL)
+    assert client.wait(timeout=8)
+    monkeypatch.setattr(services, "MAX_REQUESTS", 1)
+    calls = [client.call_async(data=True) for _ in range(2)]
+    reactor = server.reactor
+    assert reactor.run_until(lambda: server.counters.get("requests-full") == 1, 8, user=False)
+
+    def full(*given: Any) -> bool:
+        raise HistoryFull("full")
+
+    monkeypatch.setattr(service._server, "reply", full)
+    wait_until(lambda: server.counters.get("reply-history-full") == 1, "the reply is dropped")
+    assert not any(one.done() for one in calls)
+
+
+def test_closing_a_client_ends_its_calls(make2: Ros2Nodes) -> None:
+    """That which waits for a server, and that which waits for an answer."""
+    server, caller = make2("server"), make2("client", "--enclave", "/k")
+    client: Any = caller.client("/ask", SET_BOOL)
+    waiting = client.call_async(data=True)
+    client.close()
+    with pytest.raises(roslet.NodeClosed, match="the client of /ask is closed"):
+        waiting.result(1)
+    asked: list[Any] = []
+
+    def later(request: Any) -> Future[Any]:
+        asked.append(request)
+        return Future(server.reactor, "never")
+
+    server.service("/ask", SET_BOOL, later)
+    client = caller.client("/ask", SET_BOOL)
+    assert client.wait(timeout=8)
+    sent = client.call_async(data=True)
+    wait_until(lambda: asked, "it is asked")
+    client.close()
+    with pytest.raises(roslet.NodeClosed, match="the client of /ask is closed"):
+        sent.result(1)
+
+
+def test_a_service_of_another_type_is_not_called(two: tuple[roslet.Node, roslet.Node]) -> None:
+    server, caller = two
+    other = server.service("/ask", "std_srvs/srv/Trigger", lambda request: None)
+    client = caller.client("/ask", SET_BOOL)
+    future = client.call_async(data=True)
+    assert not client.wait(timeout=0.2)
+    server.service("/ask", SET_BOOL, answer)
+    server.start()
+    assert future.result(8).message == "yes"
+    assert other.calls == 0 and "malformed-request" not in server.counters

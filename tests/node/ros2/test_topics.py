@@ -10,6 +10,7 @@ import pytest
 import roslet
 from nodes import wait_until
 from ros2_nodes import DOMAIN, Ros2Nodes
+from roslet.engine.rtps import events as facts
 from roslet.gen.runtime import message_class
 from roslet.io.select import reactor
 from roslet.node import events
@@ -288,3 +289,45 @@ def test_what_has_outlived_its_lifespan_is_not_given_to_a_late_subscription(make
         node.subscribe(topic, UINT32, heard.append, qos=roslet.QoS(5, durability="transient_local"))
         node.sleep(0.1)
         assert [message.data for message in heard] == expected
+
+
+def test_a_message_longer_than_the_subscription_allows_is_dropped_and_counted(make2: Ros2Nodes) -> None:
+    talker, listener = make2("talker"), make2("listener", "--enclave", "/k")
+    publisher = talker.publisher("/t", STRING)
+    heard: list[Any] = []
+    listener.subscribe("/t", STRING, heard.append, max_message=100)
+    assert publisher.wait_for_subscribers(1, timeout=8)
+    publisher.publish(data="x" * 100)
+    publisher.publish(data="short")
+    wait_until(lambda: heard, "the short one comes")
+    assert [one.data for one in heard] == ["short"]
+    assert listener.counters["message-too-large"] == 1
+
+
+def test_messages_that_will_never_come_are_told_and_counted(make2: Ros2Nodes) -> None:
+    node = make2("node")
+    subscription: Any = node.subscribe("/t", UINT32, lambda message: None)
+    told: list[Any] = []
+    subscription.on_event(told.append)
+    subscription._happened(facts.SamplesLost(b"\0\0\1\4", bytes(16), 3))
+    wait_until(lambda: told, "it is told")
+    assert kinds(told) == [events.MessagesLost] and told[0].count == 3
+    assert node.counters["messages-lost"] == 1
+
+
+def test_datagrams_that_the_kernel_does_not_take_are_counted(make2: Ros2Nodes) -> None:
+    node: Any = make2("node")
+    with node.reactor.lock:
+        node._network.shell.domain._send((b"x",), [("255.255.255.255", 9)])  # SO_BROADCAST is not set
+    assert node.counters["datagram-not-sent"] == 1
+
+
+def test_a_node_beyond_the_bound_leaves_nothing_behind(make2: Ros2Nodes) -> None:
+    first: Any = make2("first")
+    process = first._network.process
+    process.shell.context._max_nodes = 1
+    with pytest.raises(ValueError, match="at most 1 nodes"):
+        make2("second")
+    assert process.users == 1
+    first.close()
+    assert process.users == 0 and process.shell._closed

@@ -115,14 +115,16 @@ def actions_among(topics: "dict[str, list[str]]") -> "dict[str, list[str]]":
 
 
 class ServerGoal:
-    """A goal that a server accepted. `request` and `result` are its owner's; `waiting` are requests for the result."""
+    """A goal that a server accepted. `request`, `result` and `owner` are its owner's; `waiting` are requests for the
+    result."""
 
-    __slots__ = ("expires", "finished", "request", "result", "stamp", "status", "uuid", "waiting")
+    __slots__ = ("expires", "finished", "owner", "request", "result", "stamp", "status", "uuid", "waiting")
 
     def __init__(self, uuid: bytes, stamp: int, request: "Any") -> None:
         self.uuid = uuid
         self.stamp = stamp
         self.request = request
+        self.owner: Any = None
         self.status = ACCEPTED
         self.result: Any = None
         self.finished = False  # whether `result` is there
@@ -139,13 +141,18 @@ class ServerGoals:
     """The goals of one action server, from acceptance until their results expire.
 
     result_timeout   seconds that a result is kept, None for ever (until `max_goals` are there)
-    counters         what was refused or dropped, by reason
+    counters         what was refused or dropped, by reason; those of a Context where given
     """
 
-    def __init__(self, result_timeout: "float | None" = RESULT_TIMEOUT, max_goals: int = MAX_GOALS) -> None:
+    def __init__(
+        self,
+        result_timeout: "float | None" = RESULT_TIMEOUT,
+        max_goals: int = MAX_GOALS,
+        counters: "dict[str, int] | None" = None,
+    ) -> None:
         self.result_timeout = result_timeout
         self.max_goals = max_goals
-        self.counters: dict[str, int] = {}
+        self.counters: dict[str, int] = {} if counters is None else counters
         self._goals: dict[bytes, ServerGoal] = {}
         self._order: list[bytes] = []
 
@@ -173,13 +180,13 @@ class ServerGoals:
     def get(self, uuid: bytes) -> "ServerGoal | None":
         return self._goals.get(uuid)
 
+    def all(self) -> "list[ServerGoal]":
+        """Those that are not forgotten, in the order of acceptance."""
+        return [self._goals[uuid] for uuid in self._order]
+
     def statuses(self) -> "list[tuple[bytes, int, int]]":
         """(id, stamp, status) of each goal, in the order of acceptance: what the status topic says."""
-        found = []
-        for uuid in self._order:
-            goal = self._goals[uuid]
-            found.append((uuid, goal.stamp, goal.status))
-        return found
+        return [(goal.uuid, goal.stamp, goal.status) for goal in self.all()]
 
     def apply(self, goal: ServerGoal, event: int, now: float) -> int:
         """Let an event happen to a goal; its new status, which the status topic is to say. Raises InvalidTransition."""
@@ -230,9 +237,8 @@ class ServerGoals:
             return (CANCEL_NONE, [goal]) if _cancelable(goal) else (CANCEL_TERMINATED, [])
         everything = not stamp
         found = []
-        for one in self._order:
-            goal = self._goals[one]
-            if _cancelable(goal) and (everything or goal.stamp <= stamp or one == uuid):
+        for goal in self.all():
+            if _cancelable(goal) and (everything or goal.stamp <= stamp or goal.uuid == uuid):
                 found.append(goal)
         return CANCEL_NONE, found
 
@@ -253,7 +259,7 @@ class ServerGoals:
         return expired
 
     def _finished(self) -> "list[ServerGoal]":
-        return [self._goals[uuid] for uuid in self._order if self._goals[uuid].finished]
+        return [goal for goal in self.all() if goal.finished]
 
     def _forget(self, goal: ServerGoal) -> None:
         del self._goals[goal.uuid]
@@ -300,9 +306,13 @@ class ClientGoals:
         return len(self._goals)
 
     def send(self, uuid: bytes, owner: "Any" = None) -> ClientGoal:
-        """A goal that is being sent. Raises ValueError where the id is in use, or there are too many."""
+        """A goal that is being sent. Where there are too many, those that have ended are forgotten, although nobody asked
+        for their results. Raises ValueError where the id is in use, or too many have not ended."""
         if uuid in self._goals:
             raise ValueError("the goal's id is in use")
+        if len(self._goals) >= self.max_goals:
+            for ended in [one.uuid for one in self._goals.values() if one.status >= SUCCEEDED]:
+                del self._goals[ended]
         if len(self._goals) >= self.max_goals:
             raise ValueError("%d goals have not ended" % len(self._goals))
         goal = self._goals[uuid] = ClientGoal(uuid, owner)

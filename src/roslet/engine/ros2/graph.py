@@ -246,6 +246,11 @@ class Graph:
         owner = participant.owners.get(guid)
         return (owner.name, owner.namespace) if owner is not None else (UNKNOWN_NAME, UNKNOWN_NAMESPACE)
 
+    def hash_of(self, guid: bytes) -> str:
+        """The type hash that an endpoint announced, "" where it announced none or is not known."""
+        found = self._endpoints.get(guid)
+        return "" if found is None else found.hash
+
     def topics(
         self, node: "tuple[str, str] | None" = None, writers: "bool | None" = None, mangled: bool = False
     ) -> "dict[str, list[str]]":

@@ -16,6 +16,7 @@ from roslet.engine.ros2.actions import (
     SUCCEED,
     UNKNOWN,
     ClientGoals,
+    InvalidTransition,
     ServerGoals,
     action_names,
     cancel_code,
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
     from roslet.io.select import Timer
     from roslet.node.ros2.network import Ros2Network
+    from roslet.node.services import Client
 
 FEEDBACK = QoS(10)
 STATUS = QoS(1, durability="transient_local")
@@ -124,8 +126,7 @@ class ActionServer:
         self._accepted = accepted
         self._on_goal = on_goal
         self._on_cancel = on_cancel
-        self._goals = ServerGoals(result_timeout)
-        self._handles: dict[bytes, ServerGoal] = {}
+        self._goals = ServerGoals(result_timeout, counters=network.shell.context.counters)
         self._alarm: Timer | None = None
         self._closed = False
         names = action_names(name, action_type._type)
@@ -143,17 +144,28 @@ class ActionServer:
     def _send_goal(self, request: Any) -> dict[str, Any]:
         uuid = bytes(request.goal_id.uuid)
         stamp = self.node.now()
-        accepted = not self._goals.refusal(uuid)
+        accepted = self._takes(uuid)
         if accepted and self._on_goal is not None:
             accepted = bool(self._on_goal(request.goal))
         if accepted:
-            goal = self._goals.accept(uuid, stamp.to_nsec(), request.goal)
-            handle = self._handles[uuid] = ServerGoal(self, goal)
-            self._publish_status()
+            handle = self._accept(uuid, stamp.to_nsec(), request.goal, ServerGoal)
             # Behind the response: what follows from here, its client must be able to place.
             self._network.reactor.call_soon(lambda: self._begin(handle), user=True)
         response: dict[str, Any] = {"accepted": accepted, "stamp": self._network.stamp(stamp.to_nsec())}
         return response
+
+    def _takes(self, uuid: bytes) -> bool:
+        """Whether a goal of this id may come; otherwise it is counted why not."""
+        with self._network.reactor.lock:
+            return not self._goals.refusal(uuid)
+
+    def _accept(self, uuid: bytes, stamp: int, request: Any, handle: Callable[[Any, Any], Any]) -> Any:
+        """A goal that nothing speaks against; `handle(self, goal)` makes what callbacks get, which is returned."""
+        with self._network.reactor.lock:
+            goal = self._goals.accept(uuid, stamp, request)
+            goal.owner = handle(self, goal)
+        self._publish_status()
+        return goal.owner
 
     def _begin(self, handle: ServerGoal) -> None:
         if self._handler is None:
@@ -181,12 +193,15 @@ class ActionServer:
     def _cancel(self, request: Any) -> dict[str, Any]:
         info = request.goal_info
         stamp = info.stamp.sec * 1_000_000_000 + info.stamp.nanosec
-        code, found = self._goals.cancel(bytes(info.goal_id.uuid), stamp)
+        with self._network.reactor.lock:
+            code, found = self._goals.cancel(bytes(info.goal_id.uuid), stamp)
         canceling = []
         for goal in found:
-            handle = self._handles[goal.uuid]
-            if self._on_cancel is None or self._on_cancel(handle):
-                self._apply(goal, CANCEL_GOAL)
+            if self._on_cancel is None or self._on_cancel(goal.owner):
+                try:
+                    self._apply(goal, CANCEL_GOAL)
+                except InvalidTransition:
+                    continue  # it has ended meanwhile
                 canceling.append(self._network.goal_info(goal.uuid, goal.stamp))
         return {
             "return_code": cancel_code(code, len(found), len(canceling)),
@@ -237,10 +252,11 @@ class ActionServer:
 
     def _publish_status(self) -> None:
         message: Any = self._status.type()
+        # Published with the lock held, too: of two threads, the one that knows less must not be the last.
         with self._network.reactor.lock:
             for uuid, stamp, status in self._goals.statuses():
                 message.status_list.append(self._network.goal_status(uuid, stamp, status))
-        self._status.publish(message)
+            self._status.publish(message)
 
     def _watch(self) -> None:
         at = self._goals.deadline()
@@ -250,15 +266,15 @@ class ActionServer:
     def _expire(self) -> None:
         self._alarm = None
         for goal in self._goals.handle_deadline(self._network.reactor.now()):
-            del self._handles[goal.uuid]
             for request in goal.waiting:
                 request.set_result(self._result_of(UNKNOWN, None))
         self._watch()
 
     @property
     def goals(self) -> list[ServerGoal]:
-        """Those that have not ended, or whose result is still kept, in no particular order."""
-        return list(self._handles.values())
+        """Those that have not ended, or whose result is still kept, in the order of acceptance."""
+        with self._network.reactor.lock:
+            return [goal.owner for goal in self._goals.all()]
 
     def close(self) -> None:
         """Withdraw the action. Goals are left as they are. Closing twice is allowed."""
@@ -378,12 +394,7 @@ class ActionClient:
             except ValueError as error:
                 raise RosletError(f"{self.name}: {error}") from None
 
-        def answered(future: Future[Any]) -> None:
-            if future.exception() is not None:
-                self._goals.forget(uuid)
-                answer.set_exception(future.exception() or RosletError(self.name))
-                return
-            response = future.result(0)
+        def answered(response: Any) -> None:
             stamp = response.stamp.sec * 1_000_000_000 + response.stamp.nanosec
             self._goals.answered(uuid, bool(response.accepted), stamp)
             if response.accepted:
@@ -391,7 +402,12 @@ class ActionClient:
             else:
                 answer.set_exception(GoalRejected(f"{self.name}: the server did not accept the goal"))
 
-        self._send.call_async(request).add_done_callback(answered)
+        def ended(_: Any) -> None:
+            if sent.accepted is None:
+                self._goals.forget(uuid)
+
+        answer.add_done_callback(ended)
+        self._ask(self._send, request, answer, answered)
         return answer
 
     def send_goal(
@@ -409,25 +425,43 @@ class ActionClient:
     def _wait(self, future: Future[Any], timeout: float | None) -> Any:
         if not self.node.spin_until(future.done, timeout):
             future.set_exception(CallTimeout("given up"))
+            self.node._check_open()
             raise CallTimeout(f"action {self.name}: no answer within {timeout:g} s")
         return future.result(0)
+
+    def _ask(
+        self, client: Client, request: Any, answer: Future[Any], answered: Callable[[Any], None]
+    ) -> None:
+        """Call a service: `answered(response)` is to end `answer`, which an error ends as well. Whoever gives up `answer`
+        gives up the call."""
+
+        def done(call: Future[Any]) -> None:
+            error = call.exception()
+            if error is not None:
+                answer.set_exception(error)
+            else:
+                answered(call.result(0))
+
+        try:
+            call = client.call_async(request)
+        except RosletError as error:
+            answer.set_exception(error)
+            raise
+        answer.add_done_callback(lambda _: call.set_exception(CallTimeout("given up")))
+        call.add_done_callback(done)
 
     def _ask_result(self, goal: engine.ClientGoal) -> Future[tuple[str, Any]]:
         request = self.type.GetResult.Request()
         request.goal_id.uuid = goal.uuid
         answer: Future[tuple[str, Any]] = self.node._future(f"the result of a goal of {self.name}")
 
-        def answered(future: Future[Any]) -> None:
-            if future.exception() is not None:
-                answer.set_exception(future.exception() or RosletError(self.name))
-                return
-            response = future.result(0)
+        def answered(response: Any) -> None:
             goal.status = response.status
             # Feedback that came before the result may still wait for spin to deliver it.
             self._network.reactor.call_soon(lambda: self._goals.forget(goal.uuid), user=True)
             answer.set_result((STATES[response.status], response.result))
 
-        self._get_result.call_async(request).add_done_callback(answered)
+        self._ask(self._get_result, request, answer, answered)
         return answer
 
     def _cancel(self, goal: engine.ClientGoal) -> Future[bool]:
@@ -435,14 +469,11 @@ class ActionClient:
         request.goal_info.goal_id.uuid = goal.uuid
         answer: Future[bool] = self.node._future(f"the canceling of a goal of {self.name}")
 
-        def answered(future: Future[Any]) -> None:
-            if future.exception() is not None:
-                answer.set_exception(future.exception() or RosletError(self.name))
-                return
-            canceling = future.result(0).goals_canceling
+        def answered(response: Any) -> None:
+            canceling = response.goals_canceling
             answer.set_result(any(bytes(one.goal_id.uuid) == goal.uuid for one in canceling))
 
-        self._cancel_goal.call_async(request).add_done_callback(answered)
+        self._ask(self._cancel_goal, request, answer, answered)
         return answer
 
     def _feedback_came(self, message: Any) -> None:

@@ -7,14 +7,12 @@ import os
 import threading
 import time
 
-from roslet.engine.ros2.actions import RESULT_TIMEOUT
 from roslet.errors import InvalidName, Unsupported
 from roslet.names import REQUEST, TOPIC, Ros2Arguments, dds_topic, dds_type, parse_ros2_network, resolve_ros2
 from roslet.node.log import LEVEL_NAMES
 from roslet.node.network import Network, own_classes
 from roslet.node.ros2 import descriptions
 from roslet.node.ros2 import qos as presets
-from roslet.node.ros2.actions import ActionClient, ActionServer
 from roslet.node.ros2.parameter_files import overrides_of
 from roslet.node.ros2.parameters import NodeParameters
 from roslet.node.ros2.process import join
@@ -33,7 +31,7 @@ if TYPE_CHECKING:
     from roslet.io.ros2 import Ros2Shell
     from roslet.node.node import Node
     from roslet.node.qos import QoS
-    from roslet.node.ros2.actions import ServerGoal
+    from roslet.node.ros2.actions import ActionClient, ActionServer, ServerGoal
 
 # Seconds that closing a node gives reliable subscribers to acknowledge what was published.
 CLOSE_TIMEOUT = 0.25
@@ -87,9 +85,13 @@ class Ros2Network(Network):
     def open(self) -> None:
         self.process = join(self.reactor, self._settings, self.arguments.enclave or "/", self.node._note)
         shell = self.shell
-        with self.reactor.lock:
-            self.handle = shell.context.add_node(self.base_name, self.namespace, self.reactor.now())
-            shell.flush()
+        try:
+            with self.reactor.lock:
+                self.handle = shell.context.add_node(self.base_name, self.namespace, self.reactor.now())
+                shell.flush()
+        except ValueError:
+            self.process.leave()
+            raise
 
     @property
     def shell(self) -> Ros2Shell:
@@ -327,18 +329,22 @@ class Ros2Network(Network):
         self,
         name: str,
         action_type: Any,
-        handler: Callable[[ServerGoal], Any] | None = None,
-        accepted: Callable[[ServerGoal], object] | None = None,
-        on_goal: Callable[[Any], object] | None = None,
-        on_cancel: Callable[[ServerGoal], object] | None = None,
-        result_timeout: float | None = RESULT_TIMEOUT,
+        handler: Callable[[ServerGoal], Any] | None,
+        accepted: Callable[[ServerGoal], object] | None,
+        on_goal: Callable[[Any], object] | None,
+        on_cancel: Callable[[ServerGoal], object] | None,
+        result_timeout: float | None,
     ) -> ActionServer:
         """`name` is full."""
+        from roslet.node.ros2.actions import ActionServer  # few nodes have actions
+
         kind = own_classes("ros2", action_type, "action")
         return ActionServer(self, name, kind, handler, accepted, on_goal, on_cancel, result_timeout)
 
     def action_client(self, name: str, action_type: Any) -> ActionClient:
         """`name` is full."""
+        from roslet.node.ros2.actions import ActionClient
+
         return ActionClient(self, name, own_classes("ros2", action_type, "action"))
 
     def stamp(self, nanoseconds: int) -> Any:
@@ -363,14 +369,6 @@ class Ros2Network(Network):
         """The full name of an endpoint's node, or what stands for it where it is not known."""
         name, namespace = self.graph.node_of(gid)
         return f"{'' if namespace == '/' else namespace}/{name}"
-
-    def hash_of(self, gid: bytes) -> str:
-        """The type hash that an endpoint announced, "" where it announced none."""
-        with self.reactor.lock:
-            for one in self.graph.endpoints():
-                if one.gid == gid:
-                    return one.type_hash
-        return ""
 
     def topics(self) -> dict[str, str]:
         with self.reactor.lock:

@@ -6,7 +6,7 @@ from collections import deque
 
 from roslet.engine.ros2.services import ServiceClient, ServiceServer
 from roslet.engine.rtps.history import HistoryFull
-from roslet.errors import RosletError, ServiceFailed
+from roslet.errors import NodeClosed, RosletError, ServiceFailed
 from roslet.node.future import Future
 from roslet.node.ros2 import qos as presets
 from roslet.node.ros2.qos import to_dds
@@ -65,7 +65,8 @@ class Ros2Service(Service):
             )
             network.process.services.setdefault(name, []).append(self)
             for client in network.process.clients.get(name, ()):
-                client.served_here()
+                if client.type._type == service_type._type:
+                    client.served_here(self)
             network.shell.flush()
 
     def _sample(self, proxy: WriterProxy, value: Data, time: int | None) -> None:
@@ -168,14 +169,15 @@ class Ros2Client(Client):
 
     def ready(self) -> bool:
         """Whether a server is there, and both ways are matched."""
-        return bool(self._network.process.services.get(self.name)) or self._client.ready()
+        return self._server_here() is not None or self._client.ready()
 
     def call_async(self, request: Any = None, /, **fields: Any) -> Future[Any]:
         body, future = self._begin(request, fields)
         network = self._network
         with network.reactor.lock:
-            if network.process.services.get(self.name):
-                self._call_here(body, future)
+            server = self._server_here()
+            if server is not None:
+                self._call_here(server, body, future)
             elif self._client.ready():
                 self._send(body, future)
             elif len(self._waiting) >= MAX_WAITING:
@@ -205,15 +207,21 @@ class Ros2Client(Client):
         while self._waiting and self._client.ready():
             self._send(*self._waiting.popleft())
 
-    def served_here(self) -> None:
-        """A service of this name has come up in this process. With the reactor's lock held."""
+    def served_here(self, server: Ros2Service) -> None:
+        """A service of this name and type has come up in this process. With the reactor's lock held."""
         while self._waiting:
             body, future = self._waiting.popleft()
             if not future.done():
-                self._call_here(body, future)
+                self._call_here(server, body, future)
 
-    def _call_here(self, body: bytes, future: Future[Any]) -> None:
-        server = self._network.process.services[self.name][0]
+    def _server_here(self) -> Ros2Service | None:
+        """The service of this name and type in this process."""
+        for server in self._network.process.services.get(self.name, ()):
+            if server.type._type == self.type._type:
+                return server
+        return None
+
+    def _call_here(self, server: Ros2Service, body: bytes, future: Future[Any]) -> None:
         server.receive(bytearray(body), lambda response: self._end(future, response))
 
     def _sample(self, proxy: WriterProxy, value: Data, time: int | None) -> None:
@@ -242,3 +250,7 @@ class Ros2Client(Client):
             network.clients.remove(self)
             network.process.clients[self.name].remove(self)
             network.shell.flush()
+            unanswered = [future for _, future in self._waiting] + list(self._calls.values())
+            self._waiting.clear()
+        for future in unanswered:
+            future.set_exception(NodeClosed(f"the client of {self.name} is closed"))

@@ -357,7 +357,7 @@ class Ros2Subscription(_Endpoint, Subscription):
             view = memoryview(message)
             gid, sequence, sent, received = link
             if self.type is None:
-                message = RawMessage(bytes(view), self.type_name, self._network.hash_of(gid), "")
+                message = RawMessage(bytes(view), self.type_name, self._network.graph.hash_of(gid), "")
             else:
                 try:
                     message = self.type.deserialize_from(view, 0, len(view))

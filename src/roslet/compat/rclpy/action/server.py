@@ -142,7 +142,7 @@ class _Endpoint(roslet.ActionServer):
 
     async def _send_goal(self, request: Any) -> Any:  # type: ignore[override]
         uuid = bytes(request.goal_id.uuid)
-        if self._goals.refusal(uuid):
+        if not self._takes(uuid):
             return {"accepted": False}
         answer = await await_or_execute(self.owner._goal_callback, request.goal)
         if not isinstance(answer, GoalResponse):
@@ -152,24 +152,24 @@ class _Endpoint(roslet.ActionServer):
             answer = GoalResponse.REJECT
         stamp = self.node.now().to_nsec()
         response = {
-            "accepted": answer is GoalResponse.ACCEPT and not self._goals.refusal(uuid),
+            "accepted": answer is GoalResponse.ACCEPT and self._takes(uuid),
             "stamp": self._network.stamp(stamp),
         }
         if not response["accepted"]:
             return response
-        goal = self._goals.accept(uuid, stamp, request.goal)
-        handle = ServerGoalHandle(self.owner, goal)
-        self._handles[uuid] = handle  # type: ignore[assignment]
-        self._publish_status()
+        handle = self._accept(
+            uuid, stamp, request.goal, lambda endpoint, goal: ServerGoalHandle(self.owner, goal)
+        )
         return Then(response, lambda: self.owner._accepted_callback(handle))
 
     async def _cancel(self, request: Any) -> Any:  # type: ignore[override]
         info = request.goal_info
         stamp = info.stamp.sec * 1_000_000_000 + info.stamp.nanosec
-        code, found = self._goals.cancel(bytes(info.goal_id.uuid), stamp)
+        with self._network.reactor.lock:
+            code, found = self._goals.cancel(bytes(info.goal_id.uuid), stamp)
         canceling = []
         for goal in found:
-            answer = await await_or_execute(self.owner._cancel_callback, self._handles[goal.uuid])
+            answer = await await_or_execute(self.owner._cancel_callback, goal.owner)
             if answer is CancelResponse.ACCEPT:
                 try:
                     self._apply(goal, CANCEL_GOAL)
