@@ -28,7 +28,7 @@ class Ros1Graph(Graph):
     dialect = "ros1"
 
     def __init__(self, network: str) -> None:
-        self.network, self.master_uri = parse_network(network, os.environ.get("ROS_MASTER_URI"))
+        _, self.master_uri = parse_network(network, os.environ.get("ROS_MASTER_URI"))
         self._master = Caller(self.master_uri, MASTER_TIMEOUT)
         self._state: list[dict[str, list[str]]] | None = None
         self._types: dict[str, str] | None = None
