@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from roslet.cli.options import CommandError, full_name
 from roslet.cli.parameters import NotSet, ParameterStore
+from roslet.engine.ros1.answers import parameter_names
 from roslet.errors import Fault, Unsupported
 from roslet.names import join
 
@@ -24,8 +25,8 @@ class Server(ParameterStore):
 
     def names(self, where: str) -> list[tuple[str, str]]:
         namespace = full_name(where).rstrip("/") + "/"
-        names = sorted(str(name) for name in self._graph.master("getParamNames"))
-        return [("", name) for name in names if name.startswith(namespace)]
+        names = parameter_names(self._graph.master("getParamNames"))
+        return [("", name) for name in sorted(names) if name.startswith(namespace)]
 
     def get(self, node: str, name: str) -> Any:
         full = self._full(node, name)
