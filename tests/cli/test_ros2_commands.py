@@ -117,6 +117,19 @@ def test_what_is_not_there_is_one_line_and_exit_code_1(run: Run, robot: roslet.N
         assert (outcome.code, outcome.out, outcome.err) == (1, "", f"roslet: {text}\n")
 
 
+@pytest.mark.parametrize("command", ["echo --timeout 1", "hz --for 1"])
+@pytest.mark.parametrize(
+    "topic, complaint",
+    [("/1st", "character 2, '1', must not begin a name"), ("", "character 1, '/', must not end a name")],
+)
+def test_a_topic_that_cannot_be_is_not_waited_for(
+    command: str, topic: str, complaint: str, run: Run, network: str
+) -> None:
+    outcome = run("topic", *command.split(), topic)
+    assert (outcome.code, outcome.out) == (1, "")
+    assert outcome.err == f"roslet: {topic or '/'!r}: {complaint}\n"
+
+
 def test_a_node_is_shown_with_its_actions_apart_from_its_services(run: Run, robot: roslet.Node) -> None:
     shown = json.loads(run("node", "info", "/robot", "--json").out)
     assert shown["action_servers"] == [{"action": "/count", "type": "example_interfaces/action/Fibonacci"}]

@@ -45,10 +45,9 @@ def add(parser: argparse.ArgumentParser) -> None:
 def _port(text: str) -> int:
     import argparse
 
-    value = int(text)
-    if not 0 <= value < 65536:
+    if not text.isdecimal() or int(text) > 65535:
         raise argparse.ArgumentTypeError(f"{text} is no port")
-    return value
+    return int(text)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -54,7 +54,7 @@ class Session(ABC):
     ) -> Tap:
         """Call `callback(RawMessage)` for each message of a topic, whatever its type. `qos` is what --qos said; without
         `kept` messages of before are not wanted. On ROS 2 nobody can subscribe before the type is known: that waits until
-        the topic is there."""
+        the topic is there. Raises InvalidName where no topic can have such a name."""
 
     @abstractmethod
     def reader(self) -> Reader:
@@ -87,6 +87,14 @@ _WORDS = ("reliability", "durability", "history", "liveliness")
 _SECONDS = ("deadline", "lifespan", "liveliness_lease")
 
 
+def _number(kind: type[float], part: str, what: str) -> float:
+    name, _, text = part.strip().partition("=")
+    try:
+        return kind(text)
+    except ValueError:
+        raise ValueError(f"{name} takes {what}, not {text!r}") from None
+
+
 def qos_fields(words: Sequence[str]) -> dict[str, Any]:
     """What --qos says, as fields of a QoS. Raises CommandError (wrong usage)."""
     fields: dict[str, Any] = {}
@@ -95,9 +103,9 @@ def qos_fields(words: Sequence[str]) -> dict[str, Any]:
             name, found, text = part.strip().partition("=")
             try:
                 if name == "depth":
-                    fields[name] = int(text)
+                    fields[name] = _number(int, part, "a whole number")
                 elif name in _SECONDS:
-                    fields[name] = float(text)
+                    fields[name] = _number(float, part, "seconds")
                 elif name in _WORDS and found:
                     fields[name] = text
                 else:

@@ -9,7 +9,7 @@ from roslet.cli.ros2.graph import Ros2Graph
 from roslet.cli.ros2.reader import Ros2Reader
 from roslet.cli.session import Session, qos_fields
 from roslet.engine.rtps.qos import incompatible
-from roslet.names import TOPIC
+from roslet.names import TOPIC, check_full_name
 from roslet.node.qos import QoS
 from roslet.node.ros2.qos import to_dds
 
@@ -101,7 +101,7 @@ class Ros2Session(Session):
         self, topic: str, callback: Callable[[Any], object], depth: int, qos: Sequence[str], kept: bool = True
     ) -> Ros2Tap:
         fields = ({} if kept else {"durability": "volatile"}) | qos_fields(qos)
-        return Ros2Tap(self.graph, topic, callback, depth, fields)
+        return Ros2Tap(self.graph, check_full_name(topic), callback, depth, fields)
 
     def reader(self) -> Reader:
         return Ros2Reader(self.graph)
