@@ -123,6 +123,14 @@ def test_what_ros_2_lacks_is_one_line(command: str, run: Run) -> None:
     assert outcome.err == f"roslet: {' '.join(command.split()[:2])}: the ROS 2 network has no such call\n"
 
 
+def test_run_says_where_the_domain_of_an_rclpy_program_is(run: Run) -> None:
+    outcome = run("run", "--network", "ros2://5", "talker.py")
+    assert outcome.code == 1
+    assert outcome.err == (
+        "roslet: --network names the master of a rospy program; set $ROS_DOMAIN_ID for one of rclpy\n"
+    )
+
+
 @pytest.mark.parametrize("command", ["action list", "action info /a", "action send_goal /a"])
 def test_what_ros_1_lacks_is_one_line(command: str, run: Run) -> None:
     outcome = run(*command.split(), "--network", "ros1://")
