@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from roslet.cli.options import CommandError, full_name
+from roslet.cli.options import CommandError, below, full_name
 from roslet.cli.parameters import NotSet, ParameterStore
 from roslet.engine.ros1.answers import parameter_names
 from roslet.errors import Fault, Unsupported
@@ -24,7 +24,7 @@ class Server(ParameterStore):
         return join(full_name(node), name.lstrip("~/")) if node else full_name(name)
 
     def names(self, where: str) -> list[tuple[str, str]]:
-        namespace = full_name(where).rstrip("/") + "/"
+        namespace = below(where)
         names = parameter_names(self._graph.master("getParamNames"))
         return [("", name) for name in sorted(names) if name.startswith(namespace)]
 
