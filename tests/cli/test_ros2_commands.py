@@ -143,6 +143,32 @@ def test_a_node_is_shown_with_its_actions_apart_from_its_services(run: Run, robo
 # topics
 
 
+def test_where_nodes_disagree_on_a_type_one_must_be_named(run: Run, network: str) -> None:
+    with roslet.Node("some", network=network) as some, roslet.Node("others", network=network) as others:
+        some.subscribe("t", "std_msgs/String", lambda message: None)
+        others.subscribe("t", "std_msgs/Int8", lambda message: None)
+        some.service("s", "std_srvs/Empty", lambda request: None)
+        others.service("s", "std_srvs/Trigger", lambda request: None)
+        some.action_server("a", "example_interfaces/action/Fibonacci", count)
+        others.action_server("a", "tf2_msgs/action/LookupTransform", count)
+        some.start()
+        for command, name, types, remedy in (
+            ("topic pub -1 /t - 1", "/t", "std_msgs/msg/Int8, std_msgs/msg/String", "name one instead of -"),
+            ("service call /s", "/s", "std_srvs/srv/Empty, std_srvs/srv/Trigger", "give --type"),
+            (
+                "action send_goal /a",
+                "/a",
+                "example_interfaces/action/Fibonacci, tf2_msgs/action/LookupTransform",
+                "give --type",
+            ),
+        ):
+            outcome = run(*command.split())
+            assert (outcome.code, outcome.out) == (2, "")
+            assert outcome.err == f"roslet: {name} has several types, {types}; {remedy}\n"
+        assert run("topic", "pub", "-1", "/t", "std_msgs/Int8", "1").code == 0
+        assert run("service", "call", "/s", "--type", "std_srvs/Empty", "--timeout", "5").code == 0
+
+
 def test_echo_takes_what_was_kept_and_what_comes(run: Run, robot: roslet.Node) -> None:
     assert run("topic", "echo", "/kept", "-1", "--timeout", "5").out == 'data: "before"\n---\n'
     assert run("topic", "echo", "/chatter", "-n", "2", "--field", "data").out == '"hello"\n---\n' * 2

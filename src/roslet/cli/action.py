@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.graph import open_ros2
+from roslet.cli.graph import only_type, open_ros2
 from roslet.cli.options import (
     FAILED,
     OK,
@@ -143,7 +143,7 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
         if row is None or not row["servers"]:
             raise CommandError(f"nobody serves an action {name}")
         try:
-            kind = action_class("ros2", arguments.type or row["type"])
+            kind = action_class("ros2", arguments.type or only_type(name, row["type"], "give --type"))
         except UnknownType as error:
             raise CommandError(f"{error}; load it with --types DIR") from None
         node = graph.node

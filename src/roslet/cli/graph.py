@@ -5,6 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
+from roslet.cli.options import USAGE, CommandError
+
 if TYPE_CHECKING:
     from types import TracebackType
 
@@ -103,6 +105,13 @@ class Graph(ABC):
     @abstractmethod
     def parameters(self) -> ParameterStore:
         """Where parameters are."""
+
+
+def only_type(name: str, kind: str, remedy: str) -> str:
+    """`kind`, what a graph says of the type of `name`, where that is one. Raises CommandError (wrong usage)."""
+    if ", " in kind:
+        raise CommandError(f"{name} has several types, {kind}; {remedy}", USAGE)
+    return kind
 
 
 def open_graph(network: str) -> Graph:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.graph import open_graph
+from roslet.cli.graph import only_type, open_graph
 from roslet.cli.options import (
     ALL,
     UNREACHABLE,
@@ -222,7 +222,7 @@ def run_call(arguments: argparse.Namespace) -> int:
         graph = session.graph
         if arguments.wait is not None:
             _wait(session, name, arguments.wait)
-        kind = arguments.type or graph.service_type(name)
+        kind = arguments.type or only_type(name, graph.service_type(name), "give --type")
         if kind == "*":
             raise CommandError(f"the server of {name} does not say its type; give --type", USAGE)
         from roslet.gen.runtime import service_class
