@@ -66,6 +66,8 @@ def test_lists_of_names_may_follow_an_option() -> None:
         (("topic", "pub", "/x"), "the following arguments are required: TYPE"),
         (("topic", "info", "/x", "superfluous"), "unrecognized arguments: superfluous"),
         (("topic", "info", "/x", "--nonsense"), "unrecognized arguments: --nonsense"),
+        (("master", "--port", "x"), "argument -p/--port: x is no port"),
+        (("master", "--port", "65536"), "argument -p/--port: 65536 is no port"),
     ],
 )
 def test_wrong_usage_is_named(

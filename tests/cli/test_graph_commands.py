@@ -9,6 +9,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from typing import Any
+from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
@@ -39,6 +40,26 @@ def enable(request: Any) -> dict[str, Any]:
 def columns(text: str) -> list[list[str]]:
     """The cells of a table, which are two spaces apart."""
     return [[cell.strip() for cell in line.split("  ") if cell.strip()] for line in text.splitlines()]
+
+
+@pytest.mark.parametrize(
+    "command", ["topic list", "topic type /t", "node list", "service list", "param list"]
+)
+def test_a_master_that_answers_something_else_is_one_line(command: str, run: Run) -> None:
+    server = SimpleXMLRPCServer(("127.0.0.1", 0), logRequests=False)
+    for method in ("getSystemState", "getTopicTypes", "getParamNames"):
+        server.register_function(lambda caller: [1, "", 5], method)
+    thread = threading.Thread(target=server.serve_forever, args=(0.01,))
+    thread.start()
+    try:
+        outcome = run(*command.split(), "--network", f"ros1://127.0.0.1:{server.server_address[1]}")
+    finally:
+        server.shutdown()
+        thread.join(5)
+        server.server_close()
+    assert (outcome.code, outcome.out) == (1, "")
+    assert outcome.err.startswith("roslet: bad-reply: expected ")
+    assert outcome.err.endswith(", got 5\n")
 
 
 # topics

@@ -123,6 +123,14 @@ def test_what_ros_2_lacks_is_one_line(command: str, run: Run) -> None:
     assert outcome.err == f"roslet: {' '.join(command.split()[:2])}: the ROS 2 network has no such call\n"
 
 
+def test_run_says_where_the_domain_of_an_rclpy_program_is(run: Run) -> None:
+    outcome = run("run", "--network", "ros2://5", "talker.py")
+    assert outcome.code == 1
+    assert outcome.err == (
+        "roslet: --network names the master of a rospy program; set $ROS_DOMAIN_ID for one of rclpy\n"
+    )
+
+
 @pytest.mark.parametrize("command", ["action list", "action info /a", "action send_goal /a"])
 def test_what_ros_1_lacks_is_one_line(command: str, run: Run) -> None:
     outcome = run(*command.split(), "--network", "ros1://")
@@ -130,11 +138,28 @@ def test_what_ros_1_lacks_is_one_line(command: str, run: Run) -> None:
     assert outcome.err == f"roslet: {' '.join(command.split()[:2])}: the ROS 1 network has no such thing\n"
 
 
-@pytest.mark.parametrize("words", ["depth", "depth=x", "depth=0", "reliability=perfect", "speed=5"])
-def test_a_wrong_quality_of_service_is_wrong_usage(words: str, run: Run) -> None:
+@pytest.mark.parametrize(
+    "words, complaint",
+    [
+        ("depth", "depth takes a whole number, not ''"),
+        ("depth=x", "depth takes a whole number, not 'x'"),
+        ("depth=0", "depth must be"),
+        ("deadline=soon", "deadline takes seconds, not 'soon'"),
+        ("reliability=perfect", "reliability must be one of reliable, best_effort, not 'perfect'"),
+        ("speed=5", "'speed=5' is no policy with a value; there are depth, "),
+    ],
+)
+def test_a_wrong_quality_of_service_is_wrong_usage(words: str, complaint: str, run: Run) -> None:
     outcome = run("topic", "pub", "/a", "std_msgs/Empty", "--qos", words)
     assert outcome.code == 2
-    assert outcome.err.startswith("roslet: --qos: ")
+    assert outcome.err.startswith(f"roslet: --qos: {complaint}")
+
+
+def test_a_master_uri_that_is_none_is_one_line(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_MASTER_URI", "robot:11311")
+    outcome = run("topic", "list", "--network", "ros1://")
+    assert outcome.code == 1
+    assert outcome.err == "roslet: 'robot:11311' is no URI of a master; write http://host:port\n"
 
 
 def test_a_file_that_is_not_there_is_named(run: Run, master: Any) -> None:

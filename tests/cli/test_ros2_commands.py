@@ -117,6 +117,19 @@ def test_what_is_not_there_is_one_line_and_exit_code_1(run: Run, robot: roslet.N
         assert (outcome.code, outcome.out, outcome.err) == (1, "", f"roslet: {text}\n")
 
 
+@pytest.mark.parametrize("command", ["echo --timeout 1", "hz --for 1"])
+@pytest.mark.parametrize(
+    "topic, complaint",
+    [("/1st", "character 2, '1', must not begin a name"), ("", "character 1, '/', must not end a name")],
+)
+def test_a_topic_that_cannot_be_is_not_waited_for(
+    command: str, topic: str, complaint: str, run: Run, network: str
+) -> None:
+    outcome = run("topic", *command.split(), topic)
+    assert (outcome.code, outcome.out) == (1, "")
+    assert outcome.err == f"roslet: {topic or '/'!r}: {complaint}\n"
+
+
 def test_a_node_is_shown_with_its_actions_apart_from_its_services(run: Run, robot: roslet.Node) -> None:
     shown = json.loads(run("node", "info", "/robot", "--json").out)
     assert shown["action_servers"] == [{"action": "/count", "type": "example_interfaces/action/Fibonacci"}]
@@ -128,6 +141,32 @@ def test_a_node_is_shown_with_its_actions_apart_from_its_services(run: Run, robo
 
 
 # topics
+
+
+def test_where_nodes_disagree_on_a_type_one_must_be_named(run: Run, network: str) -> None:
+    with roslet.Node("some", network=network) as some, roslet.Node("others", network=network) as others:
+        some.subscribe("t", "std_msgs/String", lambda message: None)
+        others.subscribe("t", "std_msgs/Int8", lambda message: None)
+        some.service("s", "std_srvs/Empty", lambda request: None)
+        others.service("s", "std_srvs/Trigger", lambda request: None)
+        some.action_server("a", "example_interfaces/action/Fibonacci", count)
+        others.action_server("a", "tf2_msgs/action/LookupTransform", count)
+        some.start()
+        for command, name, types, remedy in (
+            ("topic pub -1 /t - 1", "/t", "std_msgs/msg/Int8, std_msgs/msg/String", "name one instead of -"),
+            ("service call /s", "/s", "std_srvs/srv/Empty, std_srvs/srv/Trigger", "give --type"),
+            (
+                "action send_goal /a",
+                "/a",
+                "example_interfaces/action/Fibonacci, tf2_msgs/action/LookupTransform",
+                "give --type",
+            ),
+        ):
+            outcome = run(*command.split())
+            assert (outcome.code, outcome.out) == (2, "")
+            assert outcome.err == f"roslet: {name} has several types, {types}; {remedy}\n"
+        assert run("topic", "pub", "-1", "/t", "std_msgs/Int8", "1").code == 0
+        assert run("service", "call", "/s", "--type", "std_srvs/Empty", "--timeout", "5").code == 0
 
 
 def test_echo_takes_what_was_kept_and_what_comes(run: Run, robot: roslet.Node) -> None:

@@ -57,6 +57,17 @@ def test_the_public_names_of_rospy_are_listed_whole() -> None:
     assert listed == set(done.stdout.split())
 
 
+def test_the_modules_of_rclpy_are_listed_whole() -> None:
+    listed = {
+        name
+        for row in table_rows(FEATURES, "## rclpy")
+        if row[1].startswith("there")
+        for name in re.findall(r"`rclpy\.(\w+)`", row[0])
+    }
+    folder = ROOT / "src" / "roslet" / "compat" / "rclpy"
+    assert listed == {path.stem for path in folder.iterdir() if not path.stem.startswith("_")} - {"impl"}
+
+
 def commands() -> set[str]:
     """Every command that there is: `topic echo`, `master`."""
     found = set()

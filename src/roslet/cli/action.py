@@ -4,9 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.graph import open_ros2
-from roslet.cli.options import FAILED, OK, UNREACHABLE, CommandError, Group, full_name, load_types, positive
-from roslet.cli.output import emit_json, json_text, note, section, table
+from roslet.cli.graph import only_type, open_ros2
+from roslet.cli.options import (
+    FAILED,
+    OK,
+    UNREACHABLE,
+    CommandError,
+    Group,
+    below,
+    full_name,
+    load_types,
+    positive,
+)
+from roslet.cli.output import emit_json, json_text, note, note_nothing, section, table
 
 if TYPE_CHECKING:
     import argparse
@@ -22,11 +32,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Declare the commands."""
     group = Group(parser)
 
-    list_ = group.command(
-        "list", run_list, "list actions", "roslet action list\nroslet action list --names", "network json"
-    )
-    list_.add_argument("namespace", nargs="?", default="/", metavar="NAMESPACE", help="those below it only")
-    list_.add_argument("-q", "--names", action="store_true", help="names only, one a line")
+    group.listing(run_list, "actions", "roslet action list\nroslet action list --names")
 
     info = group.command(
         "info",
@@ -83,7 +89,7 @@ def _found(graph: Ros2Graph) -> dict[str, dict[str, Any]]:
 
 def run_list(arguments: argparse.Namespace) -> int:
     """`roslet action list`."""
-    namespace = full_name(arguments.namespace).rstrip("/") + "/"
+    namespace = below(arguments.namespace)
     with open_ros2(arguments.network, "action list") as graph:
         rows = [row for row in _found(graph).values() if row["action"].startswith(namespace)]
     if arguments.json:
@@ -98,7 +104,7 @@ def run_list(arguments: argparse.Namespace) -> int:
             [(row["action"], row["type"], len(row["servers"]), len(row["clients"])) for row in rows],
         )
     if not rows:
-        note("no actions" if namespace == "/" else f"no actions below {namespace}")
+        note_nothing("actions", namespace)
     return OK
 
 
@@ -137,7 +143,7 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
         if row is None or not row["servers"]:
             raise CommandError(f"nobody serves an action {name}")
         try:
-            kind = action_class("ros2", arguments.type or row["type"])
+            kind = action_class("ros2", arguments.type or only_type(name, row["type"], "give --type"))
         except UnknownType as error:
             raise CommandError(f"{error}; load it with --types DIR") from None
         node = graph.node

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from roslet.cli.options import CommandError, Group
+from roslet.cli.options import USAGE, CommandError, Group
 from roslet.errors import UnknownType
 from roslet.idl import ROS1, ROS2, Registry
 
@@ -66,7 +66,7 @@ def run_python(arguments: argparse.Namespace) -> int:
     if not arguments.names:
         names += sorted(set(loaded))
     if not names:
-        raise CommandError("nothing to write: name packages or types, or load some with --types", 2)
+        raise CommandError("nothing to write: name packages or types, or load some with --types", USAGE)
     changed = write_package(arguments.directory, registry, names)
     if arguments.json:
         emit_json(changed)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
+
+from roslet.cli.options import USAGE, CommandError
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -10,9 +13,12 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from roslet.cli.parameters import ParameterStore
+    from roslet.cli.ros1.graph import Ros1Graph
+    from roslet.cli.ros2.graph import Ros2Graph
+    from roslet.idl import Dialect
 
 
-class Graph:
+class Graph(ABC):
     """The contract, and a context manager. What is asked first is asked anew by a new object only.
 
     publishers, subscribers   topic to the names of the nodes of its endpoints; a node with two has its name there twice
@@ -22,24 +28,23 @@ class Graph:
     The methods that raise raise CommandError, for a person to read.
     """
 
-    dialect: Any = ""
-    network = ""
+    dialect: Dialect
 
     @property
-    def publishers(self) -> dict[str, list[str]]:
-        raise NotImplementedError
+    @abstractmethod
+    def publishers(self) -> dict[str, list[str]]: ...
 
     @property
-    def subscribers(self) -> dict[str, list[str]]:
-        raise NotImplementedError
+    @abstractmethod
+    def subscribers(self) -> dict[str, list[str]]: ...
 
     @property
-    def services(self) -> dict[str, list[str]]:
-        raise NotImplementedError
+    @abstractmethod
+    def services(self) -> dict[str, list[str]]: ...
 
     @property
-    def types(self) -> dict[str, str]:
-        raise NotImplementedError
+    @abstractmethod
+    def types(self) -> dict[str, str]: ...
 
     def __enter__(self) -> Self:
         return self
@@ -49,57 +54,64 @@ class Graph:
     ) -> None:
         self.close()
 
+    @abstractmethod
     def close(self) -> None:
         """Ask nothing more."""
-        raise NotImplementedError
 
     def topics(self) -> list[str]:
         """Every topic that is published or subscribed, sorted."""
         return sorted({*self.publishers, *self.subscribers})
 
+    @abstractmethod
     def nodes(self) -> list[str]:
         """Every node, sorted."""
-        raise NotImplementedError
 
     def hidden(self, name: str) -> bool:
         """Whether a list leaves out the name where nobody asks for all."""
         return False
 
+    @abstractmethod
     def endpoints_info(self, topic: str) -> dict[str, list[dict[str, Any]]]:
         """`publishers` and `subscribers` of a topic, each with what this network knows of it, as JSON data."""
-        raise NotImplementedError
 
+    @abstractmethod
     def endpoint_rows(self, endpoints: list[dict[str, Any]], verbose: bool) -> list[tuple[str, ...]]:
         """The same for a person: a row, or several, for each."""
-        raise NotImplementedError
 
+    @abstractmethod
     def service_type(self, name: str) -> str:
         """The type of a service; "*" where its server does not say it. Raises where there is no such service."""
-        raise NotImplementedError
 
+    @abstractmethod
     def service_info(self, name: str) -> dict[str, Any]:
         """What this network knows of a service, as JSON data: `type`, `nodes` and more, and a title for each in
         `service_titles`. Raises where there is no such service."""
-        raise NotImplementedError
 
     service_titles: tuple[tuple[str, str], ...] = ()
 
+    @abstractmethod
     def has_service(self, name: str) -> bool:
         """Whether the service is there now."""
-        raise NotImplementedError
 
+    @abstractmethod
     def node_info(self, name: str) -> tuple[dict[str, Any], str]:
         """What is known of a node, as JSON data, and what could not be learnt ("" where all could). Raises where there is no
         such node."""
-        raise NotImplementedError
 
+    @abstractmethod
     def print_node(self, described: dict[str, Any]) -> None:
         """Print what `node_info` found."""
-        raise NotImplementedError
 
+    @abstractmethod
     def parameters(self) -> ParameterStore:
         """Where parameters are."""
-        raise NotImplementedError
+
+
+def only_type(name: str, kind: str, remedy: str) -> str:
+    """`kind`, what a graph says of the type of `name`, where that is one. Raises CommandError (wrong usage)."""
+    if ", " in kind:
+        raise CommandError(f"{name} has several types, {kind}; {remedy}", USAGE)
+    return kind
 
 
 def open_graph(network: str) -> Graph:
@@ -107,10 +119,16 @@ def open_graph(network: str) -> Graph:
 
     Raises CommandError where a master is needed and does not answer, as soon as it is asked.
     """
-    if is_ros1(network):
-        from roslet.cli.ros1.graph import Ros1Graph
+    return _ros1(network) if is_ros1(network) else _ros2(network)
 
-        return Ros1Graph(network)
+
+def _ros1(network: str) -> Ros1Graph:
+    from roslet.cli.ros1.graph import Ros1Graph
+
+    return Ros1Graph(network)
+
+
+def _ros2(network: str) -> Ros2Graph:
     from roslet.cli.ros2.graph import Ros2Graph
 
     return Ros2Graph(network)
@@ -126,19 +144,19 @@ def is_ros1(network: str) -> bool:
     return scheme == "ros1"
 
 
-def open_ros1(network: str, what: str) -> Any:
+def open_ros1(network: str, what: str) -> Ros1Graph:
     """The graph of a network that must be one of ROS 1: on ROS 2 there is no `what`. Raises Unsupported."""
     from roslet.errors import Unsupported
 
     if not is_ros1(network):
         raise Unsupported(f"{what}: the ROS 2 network has no such call")
-    return open_graph(network)
+    return _ros1(network)
 
 
-def open_ros2(network: str, what: str) -> Any:
+def open_ros2(network: str, what: str) -> Ros2Graph:
     """The contrary."""
     from roslet.errors import Unsupported
 
     if is_ros1(network):
         raise Unsupported(f"{what}: the ROS 1 network has no such thing")
-    return open_graph(network)
+    return _ros2(network)

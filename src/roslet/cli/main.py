@@ -38,7 +38,7 @@ COMMANDS = {
     "gen": "generate code from definitions",
     "master": "be a ROS 1 master",
     "doctor": "find what keeps nodes from hearing each other",
-    "run": "run an unmodified rospy program, without ROS",
+    "run": "run an unmodified rospy or rclpy program, without ROS",
     "bench": "measure speed against peers and a raw socket",
     "demo": "see it work: master, nodes, rates, round trips, in about 20 seconds",
 }

@@ -8,7 +8,6 @@ from roslet.cli.options import finish
 
 if TYPE_CHECKING:
     import argparse
-    from typing import Any
 
     from roslet.master.server import MasterServer
     from roslet.node import Node
@@ -45,10 +44,9 @@ def add(parser: argparse.ArgumentParser) -> None:
 def _port(text: str) -> int:
     import argparse
 
-    value = int(text)
-    if not 0 <= value < 65536:
+    if not text.isdecimal() or int(text) > 65535:
         raise argparse.ArgumentTypeError(f"{text} is no port")
-    return value
+    return int(text)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -82,8 +80,5 @@ def rosout(server: MasterServer, host: str) -> Node:
     )
     gathered = node.publisher("/rosout_agg", "rosgraph_msgs/Log", qos=ROSOUT_DEPTH)
 
-    def pass_on(message: Any) -> None:
-        gathered.publish(message)
-
-    node.subscribe("/rosout", "rosgraph_msgs/Log", pass_on, qos=ROSOUT_DEPTH)
+    node.subscribe("/rosout", "rosgraph_msgs/Log", gathered.publish, qos=ROSOUT_DEPTH)
     return node

@@ -7,8 +7,8 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from roslet.cli.graph import open_graph, open_ros1
-from roslet.cli.options import ALL, UNREACHABLE, CommandError, Group, count, full_name, positive
-from roslet.cli.output import emit_json, json_text, note, seconds_text, table
+from roslet.cli.options import ALL, UNREACHABLE, USAGE, CommandError, Group, below, count, full_name, positive
+from roslet.cli.output import emit_json, json_text, note, note_nothing, seconds_text, table
 from roslet.errors import CallTimeout, ProtocolError, RemoteError, Unreachable
 
 if TYPE_CHECKING:
@@ -21,11 +21,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Declare the commands."""
     group = Group(parser)
 
-    list_ = group.command(
-        "list", run_list, "list nodes", "roslet node list\nroslet node list --names", "network json"
-    )
-    list_.add_argument("namespace", nargs="?", default="/", metavar="NAMESPACE", help="those below it only")
-    list_.add_argument("-q", "--names", action="store_true", help="names only, one a line")
+    list_ = group.listing(run_list, "nodes", "roslet node list\nroslet node list --names")
     list_.add_argument("-a", "--all", action="store_true", help=ALL)
 
     info = group.command(
@@ -64,7 +60,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run_list(arguments: argparse.Namespace) -> int:
     """`roslet node list`."""
-    namespace = full_name(arguments.namespace).rstrip("/") + "/"
+    namespace = below(arguments.namespace)
     with open_graph(arguments.network) as graph:
         parts = (graph.publishers, graph.subscribers, graph.services)
         rows = []
@@ -81,7 +77,7 @@ def run_list(arguments: argparse.Namespace) -> int:
     else:
         table(("NODE", "PUBLISHES", "SUBSCRIBES", "SERVICES"), rows)
     if not rows:
-        note("no nodes" if namespace == "/" else f"no nodes below {namespace}")
+        note_nothing("nodes", namespace)
     return 0
 
 
@@ -102,7 +98,7 @@ def run_info(arguments: argparse.Namespace) -> int:
 def run_ping(arguments: argparse.Namespace) -> int:
     """`roslet node ping`. The exit code is 3 where a node did not answer."""
     if bool(arguments.nodes) == arguments.all:
-        raise CommandError("name the nodes, or give --all", 2)
+        raise CommandError("name the nodes, or give --all", USAGE)
     results: dict[str, list[float]] = {}
     lost: dict[str, int] = {}
     from roslet.cli.ros1.nodes import uri_of
@@ -169,7 +165,7 @@ def _print_pings(results: dict[str, list[float]], lost: dict[str, int]) -> None:
 def run_kill(arguments: argparse.Namespace) -> int:
     """`roslet node kill`. The exit code is 3 where a node could not be asked."""
     if bool(arguments.nodes) == arguments.all:
-        raise CommandError("name the nodes, or give --all", 2)
+        raise CommandError("name the nodes, or give --all", USAGE)
     failed: dict[str, str] = {}
     ended = []
     from roslet.cli.ros1.nodes import uri_of

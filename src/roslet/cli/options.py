@@ -93,6 +93,15 @@ class Group:
         )
         return finish(parser, function, example, common)
 
+    def listing(self, function: Function, what: str, example: str) -> argparse.ArgumentParser:
+        """Declare the command `list` of what there is in the graph: below a namespace, with names only where wanted."""
+        parser = self.command("list", function, f"list {what}", example, "network json")
+        parser.add_argument(
+            "namespace", nargs="?", default="/", metavar="NAMESPACE", help="those below it only"
+        )
+        parser.add_argument("-q", "--names", action="store_true", help="names only, one a line")
+        return parser
+
 
 def sentence(summary: str) -> str:
     """A summary as a sentence."""
@@ -157,6 +166,11 @@ def full_name(name: str) -> str:
 
     namespace = "/" + os.environ.get("ROS_NAMESPACE", "").strip("/")
     return resolve(name, join(namespace, "roslet"))
+
+
+def below(namespace: str) -> str:
+    """What the names below a namespace, as given on the command line, begin with. Raises InvalidName."""
+    return full_name(namespace).rstrip("/") + "/"
 
 
 def load_types(arguments: Any) -> None:

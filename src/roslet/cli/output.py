@@ -51,6 +51,11 @@ def note(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
+def note_nothing(what: str, prefix: str) -> None:
+    """Say that there is nothing to list of which the name begins so."""
+    note(f"no {what}" if prefix == "/" else f"no {what} below {prefix}")
+
+
 def emit_json(value: Any, indent: int | None = 2) -> None:
     """Print one JSON document; `indent` None for one line. Numbers that JSON lacks become "NaN" and "Infinity"."""
     print(json_text(value, indent), flush=indent is None)

@@ -6,7 +6,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from roslet.cli.graph import open_graph
-from roslet.cli.options import CommandError, Group
+from roslet.cli.options import CommandError, Group, below
 from roslet.cli.parameters import NotSet
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run_list(arguments: argparse.Namespace) -> int:
     """`roslet param list`: names that `roslet param get` takes, on ROS 2 as NODE NAME."""
-    from roslet.cli.output import emit_json, note
+    from roslet.cli.output import emit_json, note_nothing
 
     with open_graph(arguments.network) as graph:
         found = graph.parameters().names(arguments.namespace)
@@ -118,8 +118,7 @@ def run_list(arguments: argparse.Namespace) -> int:
     for node, name in found:
         print(f"{node} {name}".lstrip())
     if not found:
-        below = arguments.namespace.rstrip("/")
-        note(f"no parameters below {below}/" if below else "no parameters")
+        note_nothing("parameters", below(arguments.namespace))
     return 0
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from roslet.cli.graph import is_ros1
+from roslet.cli.graph import is_ros1, only_type
 from roslet.cli.options import USAGE, CommandError, full_name, load_types
 from roslet.cli.output import note
 from roslet.cli.session import open_session, qos_fields
@@ -46,7 +46,9 @@ def publish(arguments: argparse.Namespace) -> int:
     with open_session(arguments, "pub") as session:
         node = session.node
         if message_type is None:
-            message_type = _checked(arguments, topic_type(session.graph, topic))
+            message_type = _checked(
+                arguments, only_type(topic, topic_type(session.graph, topic), "name one instead of -")
+            )
         publisher = node.publisher(topic, message_type, qos=QoS(**fields))
         end = None if arguments.limit is None else time.monotonic() + arguments.limit
         if arguments.once:

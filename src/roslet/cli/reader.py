@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
 from roslet.cli.options import CommandError
@@ -12,7 +13,7 @@ if TYPE_CHECKING:
     from roslet.wire.message import Message
 
 
-class Reader:
+class Reader(ABC):
     """The class for each type and hash is found once."""
 
     def __init__(self) -> None:
@@ -26,8 +27,8 @@ class Reader:
             kind = self._classes[key] = self._find(raw)
         return kind.deserialize(raw.data)
 
-    def _find(self, raw: RawMessage) -> type[Message]:
-        raise NotImplementedError
+    @abstractmethod
+    def _find(self, raw: RawMessage) -> type[Message]: ...
 
 
 class Ros1Reader(Reader):

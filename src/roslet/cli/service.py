@@ -4,9 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.graph import open_graph
-from roslet.cli.options import ALL, USAGE, CommandError, Group, full_name, load_types, positive
-from roslet.cli.output import emit_json, note, table
+from roslet.cli.graph import only_type, open_graph
+from roslet.cli.options import (
+    ALL,
+    UNREACHABLE,
+    USAGE,
+    CommandError,
+    Group,
+    below,
+    full_name,
+    load_types,
+    positive,
+)
+from roslet.cli.output import emit_json, note, note_nothing, table
 
 if TYPE_CHECKING:
     import argparse
@@ -18,15 +28,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Declare the commands."""
     group = Group(parser)
 
-    list_ = group.command(
-        "list",
-        run_list,
-        "list services",
-        "roslet service list\nroslet service list --types-too /camera",
-        "network json",
+    list_ = group.listing(
+        run_list, "services", "roslet service list\nroslet service list --types-too /camera"
     )
-    list_.add_argument("namespace", nargs="?", default="/", metavar="NAMESPACE", help="those below it only")
-    list_.add_argument("-q", "--names", action="store_true", help="names only, one a line")
     list_.add_argument("-a", "--all", action="store_true", help=ALL)
     list_.add_argument(
         "-t",
@@ -92,7 +96,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run_list(arguments: argparse.Namespace) -> int:
     """`roslet service list`."""
-    namespace = full_name(arguments.namespace).rstrip("/") + "/"
+    namespace = below(arguments.namespace)
     with open_graph(arguments.network) as graph:
         services = graph.services
         names = [
@@ -122,7 +126,7 @@ def run_list(arguments: argparse.Namespace) -> int:
     else:
         table(("SERVICE", "NODE"), [(row["service"], ", ".join(row["nodes"])) for row in rows])
     if not rows and not arguments.json:
-        note("no services" if namespace == "/" else f"no services below {namespace}")
+        note_nothing("services", namespace)
     return 0
 
 
@@ -218,7 +222,7 @@ def run_call(arguments: argparse.Namespace) -> int:
         graph = session.graph
         if arguments.wait is not None:
             _wait(session, name, arguments.wait)
-        kind = arguments.type or graph.service_type(name)
+        kind = arguments.type or only_type(name, graph.service_type(name), "give --type")
         if kind == "*":
             raise CommandError(f"the server of {name} does not say its type; give --type", USAGE)
         from roslet.gen.runtime import service_class
@@ -248,5 +252,5 @@ def _wait(session: Session, name: str, seconds: float) -> None:
     end = time.monotonic() + seconds
     while not session.graph.has_service(name):
         if time.monotonic() >= end:
-            raise CommandError(f"there is no service {name} within {seconds:g} s", 3)
+            raise CommandError(f"there is no service {name} within {seconds:g} s", UNREACHABLE)
         session.pause(0.05)

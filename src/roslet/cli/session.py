@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any, Protocol
 
 from roslet.cli.graph import Graph, is_ros1
 from roslet.cli.options import USAGE, CommandError
@@ -21,16 +22,15 @@ if TYPE_CHECKING:
     from roslet.node.topics import Publisher
 
 
-class Tap:
+class Tap(Protocol):
     """What listens to a topic of any type."""
 
     @property
     def publisher_count(self) -> int:
         """Publishers connected now."""
-        raise NotImplementedError
 
 
-class Session:
+class Session(ABC):
     """A context manager: `node` is a node of a name of its own, `graph` what there is besides."""
 
     node: Node
@@ -44,25 +44,25 @@ class Session:
     ) -> None:
         self.close()
 
+    @abstractmethod
     def close(self) -> None:
         """The node goes."""
-        raise NotImplementedError
 
+    @abstractmethod
     def listen(
         self, topic: str, callback: Callable[[Any], object], depth: int, qos: Sequence[str], kept: bool = True
     ) -> Tap:
         """Call `callback(RawMessage)` for each message of a topic, whatever its type. `qos` is what --qos said; without
         `kept` messages of before are not wanted. On ROS 2 nobody can subscribe before the type is known: that waits until
-        the topic is there."""
-        raise NotImplementedError
+        the topic is there. Raises InvalidName where no topic can have such a name."""
 
+    @abstractmethod
     def reader(self) -> Reader:
         """What makes messages of raw ones."""
-        raise NotImplementedError
 
+    @abstractmethod
     def expected(self, publisher: Publisher) -> int:
         """How many subscribers the publisher should have, by what the network knows."""
-        raise NotImplementedError
 
     def pause(self, seconds: float) -> None:
         """Let things happen for a time."""
@@ -87,6 +87,14 @@ _WORDS = ("reliability", "durability", "history", "liveliness")
 _SECONDS = ("deadline", "lifespan", "liveliness_lease")
 
 
+def _number(kind: type[float], part: str, what: str) -> float:
+    name, _, text = part.strip().partition("=")
+    try:
+        return kind(text)
+    except ValueError:
+        raise ValueError(f"{name} takes {what}, not {text!r}") from None
+
+
 def qos_fields(words: Sequence[str]) -> dict[str, Any]:
     """What --qos says, as fields of a QoS. Raises CommandError (wrong usage)."""
     fields: dict[str, Any] = {}
@@ -95,9 +103,9 @@ def qos_fields(words: Sequence[str]) -> dict[str, Any]:
             name, found, text = part.strip().partition("=")
             try:
                 if name == "depth":
-                    fields[name] = int(text)
+                    fields[name] = _number(int, part, "a whole number")
                 elif name in _SECONDS:
-                    fields[name] = float(text)
+                    fields[name] = _number(float, part, "seconds")
                 elif name in _WORDS and found:
                     fields[name] = text
                 else:

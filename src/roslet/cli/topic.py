@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.options import ALL, CommandError, Group, count, full_name, positive
+from roslet.cli.options import ALL, CommandError, Group, below, count, full_name, positive
 
 if TYPE_CHECKING:
     import argparse
@@ -18,15 +18,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Declare the commands."""
     group = Group(parser)
 
-    list_ = group.command(
-        "list",
-        run_list,
-        "list topics",
-        "roslet topic list\nroslet topic list --names | grep camera",
-        "network json",
-    )
-    list_.add_argument("namespace", nargs="?", default="/", metavar="NAMESPACE", help="those below it only")
-    list_.add_argument("-q", "--names", action="store_true", help="names only, one a line")
+    list_ = group.listing(run_list, "topics", "roslet topic list\nroslet topic list --names | grep camera")
     list_.add_argument("-a", "--all", action="store_true", help=ALL)
 
     info = group.command(
@@ -186,9 +178,9 @@ def _add_pub(group: Group) -> None:
 def run_list(arguments: argparse.Namespace) -> int:
     """`roslet topic list`."""
     from roslet.cli.graph import open_graph
-    from roslet.cli.output import emit_json, note, table
+    from roslet.cli.output import emit_json, note_nothing, table
 
-    namespace = full_name(arguments.namespace).rstrip("/") + "/"
+    namespace = below(arguments.namespace)
     with open_graph(arguments.network) as graph:
         topics = [
             topic
@@ -211,7 +203,7 @@ def run_list(arguments: argparse.Namespace) -> int:
                     ],
                 )
     if not topics and not arguments.json:
-        note("no topics" if namespace == "/" else f"no topics below {namespace}")
+        note_nothing("topics", namespace)
     return 0
 
 

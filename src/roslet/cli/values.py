@@ -112,10 +112,9 @@ def _assign(message: Message, path: str, text: str, now: Callable[[], Any]) -> N
     target: Any = message
     for at, step in enumerate(steps):
         if not hasattr(target, "_spec"):
-            part = {"secs": "secs", "nsecs": "nsecs"}.get(step)
-            if part is None or at != len(steps) - 1 or not hasattr(target, part):
+            if step not in ("secs", "nsecs") or at != len(steps) - 1 or not hasattr(target, step):
                 raise CommandError(f"{'.'.join(steps[:at])} has no field {step}", USAGE)
-            setattr(target, part, _converted(read_value(text), "int64", 0, path, now))
+            setattr(target, step, _converted(read_value(text), "int64", 0, path, now))
             return
         entry = dict(zip(names(type(target)), target._spec, strict=True)).get(step)
         if entry is None:

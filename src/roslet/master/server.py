@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING, Any
 from roslet.engine.ros1.rpc import CallFailed, RpcClient, RpcServer, answer_calls
 from roslet.errors import InvalidName, RosletError
 from roslet.io.interrupts import on_sigint
-from roslet.io.select import EXHAUSTED, listen, reactor, tune
+from roslet.io.select import EXHAUSTED, listen, tune
+from roslet.io.select import reactor as shared_reactor
 from roslet.io.streams import Stream, connect
 from roslet.master.core import Master, Notification
 from roslet.names import parse_host_port
@@ -72,7 +73,7 @@ class MasterServer:
         max_connections: int = MAX_CONNECTIONS,
         notification_timeout: float = NOTIFICATION_TIMEOUT,
     ) -> None:
-        self.reactor = _default_reactor() if reactor is None else reactor
+        self.reactor = shared_reactor() if reactor is None else reactor
         self.stopped = threading.Event()
         self.drops: dict[str, int] = {}
         self._max_connections = max_connections
@@ -287,10 +288,6 @@ class _Peer:
         self._server.reactor.call_soon(self.pump)
 
 
-def _default_reactor() -> Reactor:
-    return reactor()
-
-
 def _advertised(host: str) -> str:
     for variable in ("ROS_HOSTNAME", "ROS_IP"):
         if os.environ.get(variable):
@@ -309,9 +306,8 @@ def run(
     Sets /run_id, which roslaunch compares with its own. `beside(server)` is entered once the master listens, and left
     before it ends.
     """
-    loop = reactor()
     try:
-        server = MasterServer(host, port, loop)
+        server = MasterServer(host, port)
     except OSError as error:
         print(f"roslet master: cannot listen on {host}:{port}: {error.strerror or error}", file=sys.stderr)
         return 1
@@ -322,7 +318,7 @@ def run(
     try:
         with nullcontext() if beside is None else beside(server):
             print(f"ROS_MASTER_URI={server.uri}", flush=True)
-            loop.run_until(server.stopped.is_set)
+            server.reactor.run_until(server.stopped.is_set)
     except KeyboardInterrupt:
         pass
     finally:

@@ -65,6 +65,8 @@ def parse_network(network: "str | None", master: "str | None" = None) -> "tuple[
         raise InvalidName("%r is no network; write ros1://host:port" % network)
     if not rest:
         network = master or DEFAULT_MASTER
+        if "://" not in network:
+            raise InvalidName("%r is no URI of a master; write http://host:port" % network)
     elif ":" not in rest:
         network = network.rstrip("/") + ":11311"
     host, port = parse_host_port(network)

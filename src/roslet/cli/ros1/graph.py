@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from roslet.cli.graph import Graph
 from roslet.cli.options import UNREACHABLE, CommandError
+from roslet.engine.ros1 import answers
 from roslet.errors import CallTimeout, Fault, Unreachable
 from roslet.io.blocking import Caller, exchange_headers
 from roslet.names import parse_network
@@ -28,7 +29,7 @@ class Ros1Graph(Graph):
     dialect = "ros1"
 
     def __init__(self, network: str) -> None:
-        self.network, self.master_uri = parse_network(network, os.environ.get("ROS_MASTER_URI"))
+        _, self.master_uri = parse_network(network, os.environ.get("ROS_MASTER_URI"))
         self._master = Caller(self.master_uri, MASTER_TIMEOUT)
         self._state: list[dict[str, list[str]]] | None = None
         self._types: dict[str, str] | None = None
@@ -65,14 +66,14 @@ class Ros1Graph(Graph):
 
     def _system(self) -> list[dict[str, list[str]]]:
         if self._state is None:
-            answer = self.master("getSystemState")
-            self._state = [{str(name): sorted(map(str, who)) for name, who in part} for part in answer]
+            answer = answers.system_state(self.master("getSystemState"))
+            self._state = [{name: sorted(nodes) for name, nodes in part.items()} for part in answer]
         return self._state
 
     @property
     def types(self) -> dict[str, str]:
         if self._types is None:
-            self._types = {str(topic): str(kind) for topic, kind in self.master("getTopicTypes")}
+            self._types = answers.topic_types(self.master("getTopicTypes"))
         return self._types
 
     def nodes(self) -> list[str]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from roslet.cli.options import CommandError, full_name
+from roslet.cli.options import CommandError, below, full_name
 from roslet.cli.parameters import NotSet, ParameterStore
+from roslet.engine.ros1.answers import parameter_names
 from roslet.errors import Fault, Unsupported
 from roslet.names import join
 
@@ -23,9 +24,9 @@ class Server(ParameterStore):
         return join(full_name(node), name.lstrip("~/")) if node else full_name(name)
 
     def names(self, where: str) -> list[tuple[str, str]]:
-        namespace = full_name(where).rstrip("/") + "/"
-        names = sorted(str(name) for name in self._graph.master("getParamNames"))
-        return [("", name) for name in names if name.startswith(namespace)]
+        namespace = below(where)
+        names = parameter_names(self._graph.master("getParamNames"))
+        return [("", name) for name in sorted(names) if name.startswith(namespace)]
 
     def get(self, node: str, name: str) -> Any:
         full = self._full(node, name)

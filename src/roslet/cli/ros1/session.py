@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from roslet.cli.reader import Ros1Reader
 from roslet.cli.ros1.graph import Ros1Graph
-from roslet.cli.session import Session, Tap, qos_fields
+from roslet.cli.session import Session, qos_fields
 from roslet.node.node import Node
 from roslet.node.qos import QoS
 
@@ -15,17 +15,6 @@ if TYPE_CHECKING:
 
     from roslet.cli.reader import Reader
     from roslet.node.topics import Publisher, Subscription
-
-
-class Ros1Tap(Tap):
-    """A subscription of any type."""
-
-    def __init__(self, subscription: Subscription) -> None:
-        self._subscription = subscription
-
-    @property
-    def publisher_count(self) -> int:
-        return self._subscription.publisher_count
 
 
 class Ros1Session(Session):
@@ -42,9 +31,9 @@ class Ros1Session(Session):
 
     def listen(
         self, topic: str, callback: Callable[[Any], object], depth: int, qos: Sequence[str], kept: bool = True
-    ) -> Tap:
+    ) -> Subscription:
         fields = {"depth": depth, **qos_fields(qos)}
-        return Ros1Tap(self.node.subscribe(topic, "*", callback, qos=QoS(**fields)))
+        return self.node.subscribe(topic, "*", callback, qos=QoS(**fields))
 
     def reader(self) -> Reader:
         return Ros1Reader()

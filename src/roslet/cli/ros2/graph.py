@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 from roslet.cli.graph import Graph
 from roslet.cli.options import UNREACHABLE, CommandError
 from roslet.engine.ros2.graph import PUBLISHER
 from roslet.engine.rtps.qos import incompatible
-from roslet.names import REPLY, REQUEST, TOPIC
+from roslet.names import REPLY, REQUEST, TOPIC, join
 from roslet.node.node import Node
 from roslet.node.ros2.qos import from_dds
 
@@ -45,15 +46,13 @@ class Ros2Graph(Graph):
 
     def __init__(self, network: str, name: str = "ask") -> None:
         self.node = Looker("_roslet_" + name, network=network, anonymous=True)
-        self.network = self.node.network
         self._seen = -1
         self._endpoints: list[EndpointInfo] = []
         self._by_channel: dict[tuple[str, bool], dict[str, list[EndpointInfo]]] = {}
-        try:
+        with ExitStack() as undone:
+            undone.callback(self.node.close)
             self.settle()
-        except BaseException:
-            self.node.close()
-            raise
+            undone.pop_all()
 
     @property
     def net(self) -> Ros2Network:
@@ -218,7 +217,7 @@ class Ros2Graph(Graph):
 
 def full_name(one: EndpointInfo) -> str:
     """The node of an endpoint."""
-    return f"{'' if one.node_namespace == '/' else one.node_namespace}/{one.node_name}"
+    return join(one.node_namespace, one.node_name)
 
 
 def _nodes_of(found: dict[str, list[EndpointInfo]]) -> dict[str, list[str]]:

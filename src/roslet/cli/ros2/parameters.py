@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.options import CommandError, full_name
+from roslet.cli.options import CommandError, below, full_name
 from roslet.cli.parameters import NotSet, ParameterStore
 from roslet.engine.ros2.parameters import (
     BYTE_ARRAY,
@@ -62,11 +62,11 @@ class NodeParameters(ParameterStore):
         nodes = self._graph.nodes()
         if full in nodes:
             return [full]
-        below = full.rstrip("/") + "/"
+        prefix = below(where)
         return [
             one
             for one in nodes
-            if one.startswith(below)
+            if one.startswith(prefix)
             and not self._graph.hidden(one)
             and self._graph.has_service(one + "/list_parameters")
         ]

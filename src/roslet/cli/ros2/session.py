@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 from roslet.cli.output import note
 from roslet.cli.ros2.graph import Ros2Graph
 from roslet.cli.ros2.reader import Ros2Reader
-from roslet.cli.session import Session, Tap, qos_fields
+from roslet.cli.session import Session, qos_fields
 from roslet.engine.rtps.qos import incompatible
-from roslet.names import TOPIC
+from roslet.names import TOPIC, check_full_name
 from roslet.node.qos import QoS
 from roslet.node.ros2.qos import to_dds
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 LOOK = 0.1
 
 
-class Ros2Tap(Tap):
+class Ros2Tap:
     """A subscription of any type, from when the type is known."""
 
     def __init__(
@@ -99,9 +99,9 @@ class Ros2Session(Session):
 
     def listen(
         self, topic: str, callback: Callable[[Any], object], depth: int, qos: Sequence[str], kept: bool = True
-    ) -> Tap:
+    ) -> Ros2Tap:
         fields = ({} if kept else {"durability": "volatile"}) | qos_fields(qos)
-        return Ros2Tap(self.graph, topic, callback, depth, fields)
+        return Ros2Tap(self.graph, check_full_name(topic), callback, depth, fields)
 
     def reader(self) -> Reader:
         return Ros2Reader(self.graph)

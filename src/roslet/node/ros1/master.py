@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from roslet.engine.ros1 import answers
 from roslet.errors import Fault, ParameterNotSet
 from roslet.node.graph import CALL_TIMEOUT
 
@@ -69,7 +70,7 @@ class MasterApi:
             return None
 
     def parameter_names(self) -> list[str]:
-        return [str(name) for name in self.call_master("getParamNames")]
+        return answers.parameter_names(self.call_master("getParamNames"))
 
     def on_parameter(self, name: str, callback: Callable[[Any], object]) -> Any:
         self.node._check_open()
@@ -117,14 +118,10 @@ class MasterApi:
         return future.result(timeout)
 
     def system_state(self) -> tuple[dict[str, list[str]], dict[str, list[str]], dict[str, list[str]]]:
-        state = self.call_master("getSystemState")
-        publishers, subscribers, services = (
-            {str(n): [str(x) for x in who] for n, who in part} for part in state
-        )
-        return publishers, subscribers, services
+        return answers.system_state(self.call_master("getSystemState"))
 
     def topics(self) -> dict[str, str]:
-        return {str(topic): str(kind) for topic, kind in self.call_master("getTopicTypes")}
+        return answers.topic_types(self.call_master("getTopicTypes"))
 
     def nodes(self) -> list[str]:
         return sorted({name for part in self.system_state() for names in part.values() for name in names})
