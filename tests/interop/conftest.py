@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-pytest.register_assert_rewrite("interop.exchange", "interop.ros1")
-
-import peers  # noqa: E402
-from interop.ros1 import Master, Peer, Tools  # noqa: E402
+import peers
+from interop.ros1 import Master, Peer, Tools
 
 if TYPE_CHECKING:
     import roslet
