@@ -12,6 +12,8 @@ import peers
 from interop.namespace import Namespace
 
 PROGRAMS = peers.ROOT / "tests/interop/peers"
+# Seconds between the samples of every talker.
+PAUSE = 0.05
 
 
 def command(peer: str, role: str, count: int, *words: str) -> list[str]:
