@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import pytest
 
-from interop.ros2_peers import Host, Pair, Peer, wait_until
+from interop.ros2_peers import Pair, Peer, wait_until
 
 STRING, UINT32 = "std_msgs/msg/String", "std_msgs/msg/UInt32"
 _numbers = itertools.count()
@@ -116,17 +115,10 @@ def _told(end: Peer, topic: str, fact: str) -> int:
 
 
 class Exchange:
-    """The tests of a file. In the services it is the listener that serves and the talker that calls."""
+    """The tests of a file; `pair` is of conftest.py. In the services it is the listener that serves."""
 
     talker: ClassVar[str]
     listener: ClassVar[str]
-
-    @pytest.fixture(scope="class")
-    def pair(
-        self, request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-    ) -> Iterator[Pair]:
-        with Host(tmp_path_factory.mktemp(f"{request.cls.talker}-{request.cls.listener}")) as host:
-            yield Pair(host, request.cls.talker, request.cls.listener)
 
     @pytest.mark.parametrize("case", CASES, ids=str)
     def test_every_message_arrives_whole_and_in_order(self, pair: Pair, case: Case) -> None:
