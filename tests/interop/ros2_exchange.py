@@ -279,3 +279,10 @@ class CycloneExchange(Exchange):
     @pytest.mark.parametrize("case", OTHER_CASES, ids=str)
     def test_every_message_of_a_user_arrives_whole_and_in_order(self, pair: Pair, case: Case) -> None:
         self.test_every_message_arrives_whole_and_in_order(pair, case)
+
+    def check_strange(self, pair: Pair, policy: str) -> None:
+        """A policy of Cyclone's end that neither rclpy nor a node of ours can be told: both ends name it."""
+        ends = [
+            {"strange": [policy]} if end.kind == "cyclone" else {} for end in (pair.talker, pair.listener)
+        ]
+        self.test_both_ends_are_told_that_it_is_not_enough_and_why(pair, *ends, [policy])

@@ -5,12 +5,18 @@ The user-defined type, loaded from .msg by roslet, is spelled by hand at the oth
 
 from __future__ import annotations
 
+import pytest
+
 from interop.ros2_exchange import CycloneExchange, name
 from interop.ros2_peers import Pair, wait_until
 
 
 class TestExchange(CycloneExchange):
     talker, listener = "cyclone", "roslet"
+
+    @pytest.mark.parametrize("policy", ["latency_budget", "ownership"])
+    def test_both_ends_are_told_of_a_policy_that_no_node_has(self, pair: Pair, policy: str) -> None:
+        self.check_strange(pair, policy)
 
     def test_instances_of_a_keyed_topic_come_and_go(self, pair: Pair) -> None:
         """ROS 2 messages have no keys, so a node has no such subscription: it is the participant's reader that sees them."""

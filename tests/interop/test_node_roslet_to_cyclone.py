@@ -4,12 +4,18 @@ hears and serves.
 
 from __future__ import annotations
 
+import pytest
+
 from interop.ros2_exchange import CycloneExchange, name
 from interop.ros2_peers import Pair
 
 
 class TestExchange(CycloneExchange):
     talker, listener = "roslet", "cyclone"
+
+    @pytest.mark.parametrize("policy", ["presentation", "ownership", "destination_order"])
+    def test_both_ends_are_told_of_a_policy_that_no_node_has(self, pair: Pair, policy: str) -> None:
+        self.check_strange(pair, policy)
 
     def test_instances_of_a_keyed_topic_come_and_go(self, pair: Pair) -> None:
         """ROS 2 messages have no keys, so it is the participant's writer that has them, not the node."""

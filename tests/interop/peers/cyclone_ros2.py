@@ -36,7 +36,23 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 from ros2_samples import QOS, Inbox, build, differences, expected, request, response, sample
 
-POLICIES = {2: "durability", 4: "deadline", 8: "liveliness", 11: "reliability"}
+POLICIES = {
+    2: "durability",
+    3: "presentation",
+    4: "deadline",
+    5: "latency_budget",
+    6: "ownership",
+    8: "liveliness",
+    11: "reliability",
+    12: "destination_order",
+}
+# What rclpy cannot say and we never do, by what it concerns.
+STRANGE = {
+    "presentation": Policy.PresentationAccessScope.Topic(False, False),
+    "latency_budget": Policy.LatencyBudget(duration(seconds=1)),
+    "ownership": Policy.Ownership.Exclusive,
+    "destination_order": Policy.DestinationOrder.BySourceTimestamp,
+}
 TYPES = {}
 KEPT = {"durability": "transient_local", "depth": 1}
 
@@ -362,6 +378,7 @@ def profile(qos):
         Policy.Deadline(span(qos["deadline"])),
         Policy.Lifespan(span(qos["lifespan"])),
         live(span(qos["lease"])),
+        *(STRANGE[name] for name in qos.get("strange", ())),
     )
 
 
