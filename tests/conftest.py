@@ -7,6 +7,9 @@ import tempfile
 
 import pytest
 
+# Helpers that assert, beside the test modules. Here, since a helper of one folder may be imported by the tests of another.
+pytest.register_assert_rewrite("compat", "docs", "engine", "interop", "oracle")
+
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line(

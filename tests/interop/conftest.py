@@ -1,4 +1,4 @@
-"""Fixtures of the ROS 1 interop tests: one master a session and kind, long-lived peers a module."""
+"""Fixtures of the interop tests: ROS 1 masters a session and kind, long-lived peers a module or class."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-pytest.register_assert_rewrite("interop.exchange", "interop.ros1")
-
-import peers  # noqa: E402
-from interop.ros1 import Master, Peer, Tools  # noqa: E402
+import peers
+from interop.ros1 import Master, Peer, Tools
+from interop.ros2_peers import Host, Pair
 
 if TYPE_CHECKING:
     import roslet
@@ -42,6 +41,13 @@ def rospy(master: Master) -> Iterator[Peer]:
 @pytest.fixture(scope="module")
 def tools(master: Master, tmp_path_factory: pytest.TempPathFactory) -> Tools:
     return Tools(master, tmp_path_factory.mktemp("tools"))
+
+
+@pytest.fixture(scope="class")
+def pair(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Pair]:
+    """The peers that a class of ROS 2 tests names (ros2_exchange.py)."""
+    with Host(tmp_path_factory.mktemp(f"{request.cls.talker}-{request.cls.listener}")) as host:
+        yield Pair(host, request.cls.talker, request.cls.listener)
 
 
 _numbers = itertools.count()

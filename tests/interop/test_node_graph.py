@@ -1,4 +1,6 @@
-"""What roslet and rclpy see of each other's nodes, topics, endpoints and services, and how they disappear."""
+"""What roslet and rclpy see of each other's nodes, topics, endpoints and services, and how they disappear; and Cyclone, of
+nodes.
+"""
 
 from __future__ import annotations
 
@@ -132,3 +134,23 @@ def test_a_node_that_is_killed_is_gone_when_its_lease_is_over(tmp_path: pathlib.
         for peer in (ours, theirs):
             peer.wait(["/ours", "/theirs"], "nodes", patience=30)
             peer.wait([0, 0], "counts", "/from")
+
+
+@pytest.mark.parametrize("gid_size", [16, 24], ids=["as-jazzy", "as-humble"])
+def test_cyclone_and_we_list_each_others_nodes(tmp_path: pathlib.Path, gid_size: int) -> None:
+    """There is no rmw for Cyclone here; what it tells and hears is the message of that rmw, on its own topic."""
+    with Host(tmp_path) as host:
+        ours, theirs = host.peer("roslet", "ours", "/deep"), host.peer("cyclone", "theirs")
+        theirs.ask("graph", gid_size)
+        theirs.ask("publisher", "p", "/told", exchange.STRING, {})
+        theirs.ask("tell_node", "/far", "theirs", ["p"])
+        ours.wait(["/deep/ours", "/far/theirs"], "nodes")
+        wait_until(
+            lambda: [one["node"] for one in ours.ask("endpoints", "/told")] == ["/far/theirs"],
+            "the publisher has its node",
+        )
+        theirs.wait(["/deep/ours"], "nodes")
+        theirs.ask("tell_node", "", "", [])
+        ours.wait(["/deep/ours"], "nodes")
+        ours.ask("close_node")
+        theirs.wait([], "nodes", patience=GONE)

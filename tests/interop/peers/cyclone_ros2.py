@@ -36,8 +36,25 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 from ros2_samples import QOS, Inbox, build, differences, expected, request, response, sample
 
-POLICIES = {2: "durability", 4: "deadline", 8: "liveliness", 11: "reliability"}
+POLICIES = {
+    2: "durability",
+    3: "presentation",
+    4: "deadline",
+    5: "latency_budget",
+    6: "ownership",
+    8: "liveliness",
+    11: "reliability",
+    12: "destination_order",
+}
+# What rclpy cannot say and we never do, by what it concerns.
+STRANGE = {
+    "presentation": Policy.PresentationAccessScope.Topic(False, False),
+    "latency_budget": Policy.LatencyBudget(duration(seconds=1)),
+    "ownership": Policy.Ownership.Exclusive,
+    "destination_order": Policy.DestinationOrder.BySourceTimestamp,
+}
 TYPES = {}
+KEPT = {"durability": "transient_local", "depth": 1}
 
 
 def ros(name):
@@ -197,6 +214,52 @@ class Keyed(IdlStruct, typename="probe_msgs::msg::dds_::Keyed_"):
     value: int32
 
 
+# ros_discovery_info, with gids as of Jazzy and as of Humble; who has a hash of its type is no Humble.
+
+HASH = "typehash=RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e;"
+
+
+@dataclass
+class Gid(IdlStruct, typename="rmw_dds_common::msg::dds_::Gid_"):
+    data: array[uint8, 16]
+
+
+@dataclass
+class NodeEntities(IdlStruct, typename="rmw_dds_common::msg::dds_::NodeEntitiesInfo_"):
+    node_namespace: str
+    node_name: str
+    readers: sequence[Gid]
+    writers: sequence[Gid]
+
+
+@dataclass
+class Participant(IdlStruct, typename="rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"):
+    gid: Gid
+    nodes: sequence[NodeEntities]
+
+
+@dataclass
+class OldGid(IdlStruct, typename="rmw_dds_common::msg::dds_::Gid_"):
+    data: array[uint8, 24]
+
+
+@dataclass
+class OldNodeEntities(IdlStruct, typename="rmw_dds_common::msg::dds_::NodeEntitiesInfo_"):
+    node_namespace: str
+    node_name: str
+    readers: sequence[OldGid]
+    writers: sequence[OldGid]
+
+
+@dataclass
+class OldParticipant(IdlStruct, typename="rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"):
+    gid: OldGid
+    nodes: sequence[OldNodeEntities]
+
+
+GRAPHS = {16: (Gid, NodeEntities, Participant), 24: (OldGid, OldNodeEntities, OldParticipant)}
+
+
 # Services, with the header of rmw_cyclonedds: who asks, and the number of the request.
 
 
@@ -278,6 +341,7 @@ SERVICES = {
 endpoints = {}
 inboxes = {}
 facts = {}
+nodes = {}  # by participant, as its newest ros_discovery_info has them
 participant = None
 
 
@@ -314,6 +378,7 @@ def profile(qos):
         Policy.Deadline(span(qos["deadline"])),
         Policy.Lifespan(span(qos["lifespan"])),
         live(span(qos["lease"])),
+        *(STRANGE[name] for name in qos.get("strange", ())),
     )
 
 
@@ -411,6 +476,23 @@ def keyed(key, topic):
     endpoints[key] = Endpoint(DataWriter(participant, made, qos=profile({})), "keyed")
 
 
+def hear_keyed(key, topic):
+    """Every sample and every change of an instance's state: ALIVE 16, DISPOSED 32, UNREGISTERED 64."""
+    heard = inboxes[key] = []
+    made = Topic(participant, "rt" + topic, Keyed)
+    reader = DataReader(participant, made, qos=profile({"history": "keep_all"}))
+    endpoint = endpoints[key] = Endpoint(reader, "keyed")
+
+    def take():
+        while endpoint.open:
+            for one in reader.take(100):
+                valid, state = one.sample_info.valid_data, one.sample_info.instance_state
+                heard.append([one.name, one.value, state] if valid else [one.key_sample.name, None, state])
+            time.sleep(0.003)
+
+    threading.Thread(target=take, daemon=True).start()
+
+
 def write_keyed(key, name, value):
     endpoints[key].entity.write(Keyed(name=name, value=value))
 
@@ -496,6 +578,34 @@ def call(key, first, count, size, timeout):
     return wrong
 
 
+def graph(gid_size):
+    """Take part in ros_discovery_info, with gids of that many octets."""
+    qos = Qos(Policy.Userdata(HASH.encode() if gid_size == 16 else b""), base=profile(KEPT))
+    told = Topic(participant, "ros_discovery_info", GRAPHS[gid_size][2])
+    endpoints["graph"] = Endpoint(DataWriter(participant, told, qos=qos), gid_size)
+    reader = Endpoint(DataReader(participant, told, qos=qos), gid_size)
+
+    def hear(one):
+        nodes[bytes(one.gid.data)] = [
+            [node.node_namespace.rstrip("/") + "/" + node.node_name, len(node.readers), len(node.writers)]
+            for node in one.nodes
+        ]
+
+    taking(reader, hear)
+
+
+def tell_node(namespace, name, keys):
+    """That a node has these publishers, and nothing else; without a name, that there is none."""
+    writer = endpoints["graph"]
+    gid, node, info = GRAPHS[writer.type_name]
+
+    def gid_of(entity):
+        return gid(data=list(entity.get_guid().bytes.ljust(writer.type_name, b"\0")))
+
+    found = [node(namespace, name, [], [gid_of(endpoints[key].entity) for key in keys])] if name else []
+    writer.entity.write(info(gid=gid_of(participant), nodes=found))
+
+
 def participants():
     """How many participants Cyclone knows of, its own included."""
     return sum(
@@ -532,7 +642,12 @@ COMMANDS = {
     "events": lambda key: facts[key],
     "matched": matched,
     "close": close,
+    "graph": graph,
+    "tell_node": tell_node,
+    "nodes": lambda: [one[0] for found in nodes.values() for one in found],
     "keyed": keyed,
+    "hear_keyed": hear_keyed,
+    "heard_keyed": lambda key: inboxes[key],
     "write_keyed": write_keyed,
     "dispose_keyed": dispose_keyed,
     "unregister_keyed": unregister_keyed,

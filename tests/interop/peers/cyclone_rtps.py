@@ -1,7 +1,7 @@
 """A CycloneDDS peer. cyclone_rtps.py ROLE COUNT [SIZE] [best_effort] [transient_local]
 ROLE is talker or listener, of String on rt/chatter.
 
-Prints one line a fact: `ready`, `heard TEXT`. Ends by itself after COUNT facts, or 30 seconds.
+Prints one line a fact: `ready`, `heard TEXT`. Ends by itself after COUNT facts, or a minute.
 """
 
 import os
@@ -39,7 +39,7 @@ def main():
     )
     participant = DomainParticipant(int(os.environ.get("ROS_DOMAIN_ID", "0")))
     topic = Topic(participant, "rt/chatter", String_)
-    ends = time.monotonic() + 30.0
+    ends = time.monotonic() + 60.0
     if role == "talker":
         writer = DataWriter(participant, topic, qos=qos)
         say("ready")
@@ -48,7 +48,7 @@ def main():
         for number in range(count):
             writer.write(String_(data=("hello %d" % number) + "x" * size))
             time.sleep(0.05)
-        time.sleep(0.3)
+        writer.wait_for_acks(duration(seconds=30))
     else:
         reader = DataReader(participant, topic, qos=qos)
         say("ready")

@@ -1,6 +1,6 @@
 """An rclpy peer. rclpy_rtps.py ROLE COUNT: talker, listener, server or client of plain messages on /chatter and /ask.
 
-Prints one line a fact: `ready`, `heard TEXT`, `answer TEXT`. Ends by itself after COUNT facts, or 30 seconds.
+Prints one line a fact: `ready`, `heard TEXT`, `answer TEXT`. Ends by itself after COUNT facts, or a minute.
 """
 
 import sys
@@ -31,7 +31,7 @@ def main():
     rclpy.init()
     node = rclpy.create_node("rclpy_" + role)
     done = []
-    ends = time.monotonic() + 30.0
+    ends = time.monotonic() + 60.0
     if role == "talker":
         publisher = node.create_publisher(String, "chatter", qos(sys.argv))
         say("ready")
@@ -40,7 +40,7 @@ def main():
         for number in range(count):
             publisher.publish(String(data=("hello %d" % number) + "x" * size))
             rclpy.spin_once(node, timeout_sec=0.05)
-        publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=5))
+        publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=30))
     elif role == "listener":
 
         def heard(message):
@@ -66,7 +66,7 @@ def main():
         rclpy.spin_once(node, timeout_sec=0.2)
     elif role == "client":
         client = node.create_client(SetBool, "ask")
-        client.wait_for_service(20.0)
+        client.wait_for_service(60.0)
         for number in range(count):
             future = client.call_async(SetBool.Request(data=number % 2 == 0))
             rclpy.spin_until_future_complete(node, future, timeout_sec=10.0)

@@ -10,8 +10,10 @@ mortal NAME, kill PID                     a node in a child, and its end
 """
 
 import gc
+import hashlib
 import os
 import pathlib
+import struct
 import sys
 import time
 
@@ -208,6 +210,39 @@ def keyed(key, topic, type_name):
         shell.flush()
 
 
+def keyed_writer(key, topic, type_name):
+    """A writer of a keyed topic, likewise; `write_keyed` and the others are those of cyclone_ros2.py."""
+    from roslet.wire.rtps import qos as policies
+
+    shell = node._network.shell
+    with node.reactor.lock:
+        endpoints[key] = shell.participant.create_writer(
+            "rt" + topic,
+            type_name,
+            policies.Qos(reliability=(policies.RELIABLE, 10**8), history=(policies.KEEP_ALL, 1)),
+            node.reactor.now(),
+            keyed=True,
+        )
+        shell.flush()
+
+
+def of_instance(act):
+    """A command KEY NAME [VALUE] on an instance: `act(writer, key hash, serialised name, now, VALUE)`."""
+
+    def command(key, name, *value):
+        octets = name.encode() + b"\0"
+        big, little = (struct.pack(order + "I", len(octets)) + octets for order in "><")
+        with node.reactor.lock:
+            act(endpoints[key], hashlib.md5(big).digest(), b"\0\1\0\0" + little, node.reactor.now(), *value)
+            node._network.shell.flush()
+
+    return command
+
+
+def write_keyed(writer, instance, name, now, value):
+    writer.write(name + bytes(-len(name) % 4) + struct.pack("<i", value), now, key=instance)
+
+
 def begin(name, namespace="", network=None):
     global node
     roslet.load(WORKSPACE)
@@ -283,6 +318,11 @@ COMMANDS = {
     "counters": lambda: node.counters,
     "keyed": keyed,
     "heard_keyed": lambda key: inboxes[key],
+    "keyed_writer": keyed_writer,
+    "keyed_matched": lambda key: len(endpoints[key].proxies),
+    "write_keyed": of_instance(write_keyed),
+    "dispose_keyed": of_instance(lambda writer, key, name, now: writer.dispose(key, now, name)),
+    "unregister_keyed": of_instance(lambda writer, key, name, now: writer.unregister(key, now, name)),
     "process": process,
     "tables": tables,
     "crowd": crowd,

@@ -1,7 +1,8 @@
 """A roslet peer on the participant itself, without a node. roslet_rtps.py ROLE COUNT [SIZE] [best_effort] [transient_local]
-[ros2://...]
+[ros2://...] [hasty]
 
-The same facts in the same words as rclpy_rtps.py and cyclone_rtps.py.
+The same facts in the same words as rclpy_rtps.py and cyclone_rtps.py. `hasty`: it announces itself twice a second, and is
+taken for gone when it has been silent for three.
 """
 
 import os
@@ -44,25 +45,26 @@ def main():
 
     reactor = Reactor()
     url = next((word for word in sys.argv if word.startswith("ros2:")), None)
-    domain = Domain(reactor, on_event, parse_ros2_network(url, os.environ))
+    hasty = {"period": 0.5, "lease": 3.0} if "hasty" in sys.argv else {}
+    domain = Domain(reactor, on_event, parse_ros2_network(url, os.environ), **hasty)
     participant = domain.participant
-    ends = time.monotonic() + 30.0
+    ends = time.monotonic() + 60.0
     with reactor.lock:
         make = participant.create_writer if role == "talker" else participant.create_reader
         endpoint = make("rt/chatter", TYPE, policies, reactor.now())
         domain.flush()
     say("ready")
     if role == "talker":
-        reactor.run_until(lambda: endpoint.proxies, 30.0)
+        reactor.run_until(lambda: endpoint.proxies, 60.0)
         for number in range(count):
             text = ("hello %d" % number + "x" * size).encode() + b"\0"
             with reactor.lock:
                 endpoint.write(struct.pack("<HHI", 0x0100, 0, len(text)) + text, reactor.now())
                 domain.flush()
             reactor.run_until(lambda: False, 0.05)
-        say("acknowledged", reactor.run_until(lambda: endpoint.acknowledged(count), 5.0))
+        say("acknowledged", reactor.run_until(lambda: endpoint.acknowledged(count), 30.0))
     else:
-        reactor.run_until(lambda: len(heard) >= count or time.monotonic() > ends, 30.0)
+        reactor.run_until(lambda: len(heard) >= count or time.monotonic() > ends, 60.0)
         reactor.run_until(lambda: False, 0.1)
     if "counters" in sys.argv:
         print(participant.counters, domain.errors, file=sys.stderr)
