@@ -125,9 +125,9 @@ class ActionClient:
         self._action_name = action_name
         self._feedback: dict[bytes, Callable[[Any], Any]] = {}
         full = node.resolve_service_name(action_name)
-        self._endpoint = _Endpoint(node._network, full, action_type)
+        self._endpoint = _Endpoint(node._node_network, full, action_type)
         self._endpoint.owner = self
-        self._inbox: Inbox = node._adopt(Entity, Inbox(callback_group or node.default_callback_group))
+        self._inbox: Inbox = node._node_adopt(Entity, Inbox(callback_group or node.default_callback_group))
         for subscription in self._endpoint._subscriptions:
             self._follow(subscription)
 
@@ -200,7 +200,7 @@ class ActionClient:
 
     def destroy(self) -> None:
         """Send no more. Twice is allowed."""
-        self._node._disown(Entity, self._inbox)
+        self._node._node_disown(Entity, self._inbox)
         self._endpoint.close()
 
     def __enter__(self) -> ActionClient:

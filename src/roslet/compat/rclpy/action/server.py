@@ -221,14 +221,14 @@ class ActionServer:
         self.register_cancel_callback(cancel_callback)
         full = node.resolve_service_name(action_name)
         self._endpoint = _Endpoint(
-            node._network, full, action_type, None, lambda goal: None, None, None, result_timeout
+            node._node_network, full, action_type, None, lambda goal: None, None, None, result_timeout
         )
         self._endpoint.owner = self
         group = callback_group or node.default_callback_group
         self._requests = []
         for service in self._endpoint._services:
             requests = Requests(service, group, None)  # type: ignore[arg-type]
-            self._requests.append(node._adopt(Entity, requests))
+            self._requests.append(node._node_adopt(Entity, requests))
 
     @property
     def action_type(self) -> Any:
@@ -293,7 +293,7 @@ class ActionServer:
     def destroy(self) -> None:
         """Withdraw the action. Twice is allowed."""
         for requests in self._requests:
-            self._node._disown(Entity, requests)
+            self._node._node_disown(Entity, requests)
         self._requests = []
         self._endpoint.close()
 
