@@ -47,6 +47,7 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
     "service and client": (("services_server.py",), ("services_client.py",)),
     "failing services": (("service_failing.py",),),
     "actions": (("actions.py",),),
+    "late goals": (("actions_late.py",),),
     "action server and client": (("action_server.py",), ("action_client.py",)),
     "corners": (("corners.py",),),
     "parameters": (("parameters.py",),),
@@ -118,7 +119,7 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
 # Their log lines on standard error are compared too.
 LOGGED = ("logging",)
 # They need the package test_msgs, the only one among the wheels that has an action.
-NEED_TEST_MSGS = ("actions", "corners", "action server and client")
+NEED_TEST_MSGS = ("actions", "late goals", "corners", "action server and client")
 
 _LOG = re.compile(r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] \[\d+\.\d+\] (?!\[(?:rcl|rmw))")
 _TIME = re.compile(r"\[\d{9,}\.\d+\]")

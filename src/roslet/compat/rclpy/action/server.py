@@ -169,7 +169,10 @@ class _Endpoint(roslet.ActionServer):
         code, found = self._goals.cancel(bytes(info.goal_id.uuid), stamp)
         canceling = []
         for goal in found:
-            answer = await await_or_execute(self.owner._cancel_callback, self._handles[goal.uuid])
+            handle = self._handles.get(goal.uuid)
+            if handle is None:
+                continue  # its result has expired while another's callback was awaited
+            answer = await await_or_execute(self.owner._cancel_callback, handle)
             if answer is CancelResponse.ACCEPT:
                 try:
                     self._apply(goal, CANCEL_GOAL)
@@ -267,7 +270,7 @@ class ActionServer:
     def notify_execute(
         self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
     ) -> None:
-        """Have the executor of the node do the work of a goal."""
+        """Have the executor of the node do the work of a goal; where the node has none, nobody does it, as in rclpy."""
         executor = self._node.executor
         if executor is not None:
             executor.create_task(self._execute, execute_callback or self._execute_callback, goal_handle)
