@@ -28,6 +28,7 @@ NOT_JAZZY = {
     "contexts": "init is no context manager",
     "life of a node": "nodes are no context managers",
     "lifecycle nodes": "a transition that is not allowed raises",
+    "managed node": "a transition that is not allowed raises",
     "no arguments": "types are printed by their names",
     "arguments": "types are printed by their names",
     "a file of parameters": "types are printed by their names",
