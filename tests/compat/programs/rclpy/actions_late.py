@@ -7,6 +7,7 @@ from action_msgs.srv import CancelGoal
 from rclpy.action import ActionClient, ActionServer, CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.task import Future
 from test_msgs.action import Fibonacci
 
@@ -64,8 +65,29 @@ gc.collect()
 print(node.executor)
 client.destroy()
 server.destroy()
-server = ActionServer(node, Fibonacci, "nobody", execute, handle_accepted_callback=handles.append)
-client = ActionClient(node, Fibonacci, "nobody")
+feedback = QoSProfile(depth=3, reliability=ReliabilityPolicy.BEST_EFFORT)
+server = ActionServer(
+    node,
+    Fibonacci,
+    "nobody",
+    execute,
+    handle_accepted_callback=handles.append,
+    feedback_pub_qos_profile=feedback,
+    status_pub_qos_profile=QoSProfile(depth=1),
+)
+client = ActionClient(
+    node,
+    Fibonacci,
+    "nobody",
+    feedback_sub_qos_profile=feedback,
+    status_sub_qos_profile=QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
+)
+for name in ("feedback", "status"):
+    for one in (
+        *node.get_publishers_info_by_topic("nobody/_action/" + name),
+        *node.get_subscriptions_info_by_topic("nobody/_action/" + name),
+    ):
+        print(name, one.qos_profile.reliability.name, one.qos_profile.durability.name)
 executor = SingleThreadedExecutor()
 executor.add_node(node)
 client.wait_for_server()

@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from roslet.compat.interfaces import message_class
 from roslet.compat.rclpy._entity import Entity
+from roslet.compat.rclpy.action._qos import FEEDBACK, action_qos
 from roslet.compat.rclpy.client import Inbox, wait_done
+from roslet.compat.rclpy.qos import (
+    QoSProfile,
+    qos_profile_action_status_default,
+    qos_profile_services_default,
+)
 from roslet.compat.rclpy.task import Future
 from roslet.compat.rclpy.type_support import check_is_valid_action_type
 from roslet.engine.ros2.actions import UNKNOWN
@@ -104,7 +110,7 @@ class _Endpoint(roslet.ActionClient):
 
 
 class ActionClient:
-    """Sends goals. Profiles of quality of service are taken for those of rclpy's defaults, whatever is given."""
+    """Sends goals. The profiles are the qualities of service of its channels."""
 
     def __init__(
         self,
@@ -113,11 +119,11 @@ class ActionClient:
         action_name: str,
         *,
         callback_group: CallbackGroup | None = None,
-        goal_service_qos_profile: Any = None,
-        result_service_qos_profile: Any = None,
-        cancel_service_qos_profile: Any = None,
-        feedback_sub_qos_profile: Any = None,
-        status_sub_qos_profile: Any = None,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_sub_qos_profile: QoSProfile = FEEDBACK,
+        status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
     ) -> None:
         check_is_valid_action_type(action_type)
         self._node = node
@@ -125,7 +131,14 @@ class ActionClient:
         self._action_name = action_name
         self._feedback: dict[bytes, Callable[[Any], Any]] = {}
         full = node.resolve_service_name(action_name)
-        self._endpoint = _Endpoint(node._node_network, full, action_type)
+        qos = action_qos(
+            goal_service_qos_profile,
+            cancel_service_qos_profile,
+            result_service_qos_profile,
+            feedback_sub_qos_profile,
+            status_sub_qos_profile,
+        )
+        self._endpoint = _Endpoint(node._node_network, full, action_type, qos)
         self._endpoint.owner = self
         self._inbox: Inbox = node._node_adopt(Entity, Inbox(callback_group or node.default_callback_group))
         for subscription in self._endpoint._subscriptions:

@@ -12,8 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 from roslet.compat.interfaces import message_class
 from roslet.compat.rclpy._entity import Entity
+from roslet.compat.rclpy.action._qos import FEEDBACK, action_qos
 from roslet.compat.rclpy.exceptions import RCLError
 from roslet.compat.rclpy.executors import await_or_execute
+from roslet.compat.rclpy.qos import (
+    QoSProfile,
+    qos_profile_action_status_default,
+    qos_profile_services_default,
+)
 from roslet.compat.rclpy.service import Requests, Then
 from roslet.compat.rclpy.type_support import check_is_valid_action_type
 from roslet.engine.ros2.actions import (
@@ -194,7 +200,7 @@ class ActionServer:
     cancel_callback(goal_handle)            gives a CancelResponse; by default nothing is cancelled
     result_timeout                          seconds that a result is kept
 
-    The profiles of quality of service are taken for those of rclpy's defaults, whatever is given.
+    The profiles are the qualities of service of its channels.
     """
 
     def __init__(
@@ -208,11 +214,11 @@ class ActionServer:
         goal_callback: Callable[[Any], Any] = default_goal_callback,
         handle_accepted_callback: Callable[[ServerGoalHandle], Any] = default_handle_accepted_callback,
         cancel_callback: Callable[[Any], Any] = default_cancel_callback,
-        goal_service_qos_profile: Any = None,
-        result_service_qos_profile: Any = None,
-        cancel_service_qos_profile: Any = None,
-        feedback_pub_qos_profile: Any = None,
-        status_pub_qos_profile: Any = None,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_pub_qos_profile: QoSProfile = FEEDBACK,
+        status_pub_qos_profile: QoSProfile = qos_profile_action_status_default,
         result_timeout: float = 10,
     ) -> None:
         check_is_valid_action_type(action_type)
@@ -223,8 +229,15 @@ class ActionServer:
         self.register_handle_accepted_callback(handle_accepted_callback)
         self.register_cancel_callback(cancel_callback)
         full = node.resolve_service_name(action_name)
+        qos = action_qos(
+            goal_service_qos_profile,
+            cancel_service_qos_profile,
+            result_service_qos_profile,
+            feedback_pub_qos_profile,
+            status_pub_qos_profile,
+        )
         self._endpoint = _Endpoint(
-            node._node_network, full, action_type, None, lambda goal: None, None, None, result_timeout
+            node._node_network, full, action_type, None, lambda goal: None, None, None, result_timeout, qos
         )
         self._endpoint.owner = self
         group = callback_group or node.default_callback_group
