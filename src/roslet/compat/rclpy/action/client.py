@@ -92,21 +92,17 @@ class ClientGoalHandle:
         def ended(response: Any) -> Any:
             client._endpoint._goals.result(self._goal.uuid, response.status)
             self._goal.status = response.status or self._goal.status
-            client._feedback.pop(self._goal.uuid, None)
             return response
 
         return client._call(client._endpoint._get_result, request, ended)
 
 
 class _Endpoint(roslet.ActionClient):
-    """roslet's action client, with feedback for the one who asks."""
+    """roslet's action client, whose callbacks get the whole feedback message."""
 
-    owner: ActionClient
-
-    def _feedback_came(self, message: Any) -> None:
-        callback = self.owner._feedback.get(bytes(message.goal_id.uuid))
-        if callback is not None:
-            callback(message)
+    def _feedback_came(self, message: Any) -> Any:
+        goal = self._goals.get(bytes(message.goal_id.uuid))
+        return None if goal is None or goal.owner is None else goal.owner(message)
 
 
 class ActionClient:
@@ -129,7 +125,6 @@ class ActionClient:
         self._node = node
         self._action_type = action_type
         self._action_name = action_name
-        self._feedback: dict[bytes, Callable[[Any], Any]] = {}
         full = node.resolve_service_name(action_name)
         qos = action_qos(
             goal_service_qos_profile,
@@ -139,16 +134,14 @@ class ActionClient:
             status_sub_qos_profile,
         )
         self._endpoint = _Endpoint(node._node_network, full, action_type, qos)
-        self._endpoint.owner = self
         self._inbox: Inbox = node._node_adopt(Entity, Inbox(callback_group or node.default_callback_group))
         for subscription in self._endpoint._subscriptions:
             self._follow(subscription)
 
     def _follow(self, subscription: Any) -> None:
-        def deliver() -> None:
+        def deliver() -> Any:
             found = subscription.take_one()
-            if found is not None:
-                subscription._callback(found[0])
+            return None if found is None else subscription._callback(found[0])
 
         with self._endpoint._network.reactor.lock:
             subscription.arrived = lambda: self._inbox.put(deliver)
@@ -172,8 +165,9 @@ class ActionClient:
         feedback_callback: Callable[[Any], Any] | None = None,
         goal_uuid: Any = None,
     ) -> Future[ClientGoalHandle]:
-        """A future of a ClientGoalHandle, accepted or not. `feedback_callback(message)` gets the whole feedback message.
-        Raises TypeError for what is no goal message, RuntimeError where the id is in use."""
+        """A future of a ClientGoalHandle, accepted or not. `feedback_callback(message)` gets the whole feedback message; it
+        may be a coroutine function. Raises TypeError for what is no goal message, RuntimeError where the id is in use or
+        1024 goals have not ended."""
         if not isinstance(goal, self._action_type.Goal):
             raise TypeError(f"expected a goal message, not {type(goal).__name__}")
         uuid = os.urandom(16) if goal_uuid is None else bytes(goal_uuid.uuid)
@@ -182,17 +176,13 @@ class ActionClient:
         goals = self._endpoint._goals
         with self._endpoint._network.reactor.lock:
             try:
-                sent = goals.send(uuid)
+                sent = goals.send(uuid, feedback_callback)
             except ValueError as error:
-                raise RuntimeError(f"Goal ID already in use: {error}") from None
-        if feedback_callback is not None:
-            self._feedback[uuid] = feedback_callback
+                raise RuntimeError(f"{self._action_name}: {error}") from None
 
         def answered(response: Any) -> ClientGoalHandle:
             stamp = response.stamp.sec * 1_000_000_000 + response.stamp.nanosec
             goals.answered(uuid, bool(response.accepted), stamp)
-            if not response.accepted:
-                self._feedback.pop(uuid, None)
             return ClientGoalHandle(self, sent, response)
 
         return self._call(self._endpoint._send, request, answered)
