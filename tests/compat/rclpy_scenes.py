@@ -47,6 +47,7 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
     "service and client": (("services_server.py",), ("services_client.py",)),
     "failing services": (("service_failing.py",),),
     "actions": (("actions.py",),),
+    "destroyed action servers": (("actions_gone.py",),),
     "late goals": (("actions_late.py",),),
     "action server and client": (("action_server.py",), ("action_client.py",)),
     "judged goals": (("action_judge.py",), ("action_suitor.py",)),
@@ -121,7 +122,14 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
 # Their log lines on standard error are compared too.
 LOGGED = ("logging",)
 # They need the package test_msgs, the only one among the wheels that has an action.
-NEED_TEST_MSGS = ("actions", "late goals", "corners", "action server and client", "judged goals")
+NEED_TEST_MSGS = (
+    "actions",
+    "destroyed action servers",
+    "late goals",
+    "corners",
+    "action server and client",
+    "judged goals",
+)
 
 _LOG = re.compile(r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] \[\d+\.\d+\] (?!\[(?:rcl|rmw))")
 _TIME = re.compile(r"\[\d{9,}\.\d+\]")

@@ -29,6 +29,7 @@ from roslet.engine.ros2.actions import (
     CANCELING,
     EXECUTE,
     SUCCEED,
+    UNKNOWN,
     InvalidTransition,
 )
 from roslet.errors import NodeClosed
@@ -82,18 +83,18 @@ class ServerGoalHandle:
 
     @property
     def is_active(self) -> bool:
-        """Whether it has not ended."""
-        return self._goal.active
+        """Whether it has not ended, and its server is there."""
+        return self._goal.active and not self._server._endpoint._closed
 
     @property
     def is_cancel_requested(self) -> bool:
         """Whether it is to be cancelled."""
-        return self._goal.status == CANCELING
+        return self.status == CANCELING
 
     @property
     def status(self) -> int:
-        """As action_msgs/msg/GoalStatus numbers it."""
-        return self._goal.status
+        """As action_msgs/msg/GoalStatus numbers it; unknown once its server is destroyed."""
+        return UNKNOWN if self._server._endpoint._closed else self._goal.status
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
         """Have the executor call `execute_callback(self)`, the server's where None. What it returns is the result."""
@@ -111,7 +112,8 @@ class ServerGoalHandle:
             return
 
     def succeed(self) -> None:
-        """It is done. Raises RCLError where it has ended, or does not run; likewise the following."""
+        """It is done. Raises RCLError where it has ended, or does not run; does nothing where the server is destroyed.
+        Likewise the following."""
         self._server._happens(self._goal, SUCCEED)
 
     def abort(self) -> None:
@@ -158,7 +160,7 @@ class _Endpoint(roslet.ActionServer):
             answer = GoalResponse.REJECT
         stamp = self.node.now().to_nsec()
         response = {
-            "accepted": answer is GoalResponse.ACCEPT and not self._goals.refusal(uuid),
+            "accepted": answer is GoalResponse.ACCEPT and not self._closed and not self._goals.refusal(uuid),
             "stamp": self._network.stamp(stamp),
         }
         if not response["accepted"]:
@@ -182,8 +184,8 @@ class _Endpoint(roslet.ActionServer):
             if answer is CancelResponse.ACCEPT:
                 try:
                     self._apply(goal, CANCEL_GOAL)
-                except InvalidTransition:
-                    continue  # it has ended meanwhile
+                except (InvalidTransition, NodeClosed):
+                    continue  # it has ended meanwhile, or the server has
                 canceling.append(self._network.goal_info(goal.uuid, goal.stamp))
         return {
             "return_code": code,  # rclpy says nothing of rejection but that no goal is named
@@ -279,6 +281,8 @@ class ActionServer:
             self._endpoint._apply(goal, event)
         except InvalidTransition as error:
             raise RCLError(f"Failed to update goal state: {error}") from None
+        except NodeClosed:
+            return
 
     def notify_execute(
         self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
@@ -295,6 +299,8 @@ class ActionServer:
         except Exception as error:
             self._log().error(f"Error raised in execute callback: {error}")
             traceback.print_exc()
+        if self._endpoint._closed:
+            return
         if handle.is_active:
             number = handle.goal_id.uuid
             self._log().warning(f"Goal state not set, assuming aborted. Goal ID: {number}")
