@@ -123,7 +123,8 @@ def to_description(message: Any) -> store.Descriptor:
 
 
 class ParametersOfNode:
-    """The part of `rclpy.node.Node` that is parameters."""
+    """The part of `rclpy.node.Node` that is parameters. Once the node is destroyed they can be asked for still; what
+    changes them raises InvalidHandle."""
 
     _node_network: RclpyNetwork
     _node_set_callbacks: dict[tuple[str, Any], list[Callable[[Any], Any]]]
@@ -133,7 +134,6 @@ class ParametersOfNode:
 
     @property
     def _node_store(self) -> store.Parameters:
-        self._node_check()
         return self._node_network.parameters.store
 
     # -- declaring
@@ -153,6 +153,7 @@ class ParametersOfNode:
         self, namespace: str, parameters: Sequence[Sequence[Any]], ignore_override: bool = False
     ) -> list[Parameter]:
         """Declare several, each (name), (name, value) or (name, value, descriptor), within a namespace of parameters."""
+        self._node_check()
         within = self._node_store
         found = []
         for given in parameters:
@@ -195,6 +196,7 @@ class ParametersOfNode:
 
     def undeclare_parameter(self, name: str) -> None:
         """Raises ParameterNotDeclaredException, ParameterImmutableException."""
+        self._node_check()
         within = self._node_store
         if not within.has(name):
             raise ParameterNotDeclaredException(name)
@@ -281,6 +283,7 @@ class ParametersOfNode:
         return self._node_set(parameter_list)
 
     def _node_set(self, parameters: Sequence[Parameter]) -> Any:
+        self._node_check()
         try:
             successful, reason = self._node_store.set_atomically([to_store(one) for one in parameters])
         except ParameterNotDeclared:
@@ -294,6 +297,7 @@ class ParametersOfNode:
         """Describe a parameter anew; its ParameterValue. `alternative_value`, a ParameterValue, is taken where the present
         one does not suit. Raises ParameterNotDeclaredException, ParameterImmutableException,
         InvalidParameterValueException."""
+        self._node_check()
         otherwise = None if alternative_value is None else services.from_value(name, alternative_value).value
         try:
             return services.to_value(
