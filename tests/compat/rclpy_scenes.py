@@ -47,7 +47,10 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
     "service and client": (("services_server.py",), ("services_client.py",)),
     "failing services": (("service_failing.py",),),
     "actions": (("actions.py",),),
+    "destroyed action servers": (("actions_gone.py",),),
+    "late goals": (("actions_late.py",),),
     "action server and client": (("action_server.py",), ("action_client.py",)),
+    "judged goals": (("action_judge.py",), ("action_suitor.py",)),
     "corners": (("corners.py",),),
     "parameters": (("parameters.py",),),
     "parameter clients": (("parameter_clients.py",),),
@@ -63,6 +66,7 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
     "contexts": (("contexts.py",),),
     "life of a node": (("node_life.py",),),
     "lifecycle nodes": (("lifecycle.py",),),
+    "managed node": (("lifecycle_managed.py",), ("lifecycle_manager.py",)),
     "validation": (("validation.py",),),
     "no arguments": (("arguments.py",),),
     "arguments": (
@@ -118,7 +122,14 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
 # Their log lines on standard error are compared too.
 LOGGED = ("logging",)
 # They need the package test_msgs, the only one among the wheels that has an action.
-NEED_TEST_MSGS = ("actions", "corners", "action server and client")
+NEED_TEST_MSGS = (
+    "actions",
+    "destroyed action servers",
+    "late goals",
+    "corners",
+    "action server and client",
+    "judged goals",
+)
 
 _LOG = re.compile(r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] \[\d+\.\d+\] (?!\[(?:rcl|rmw))")
 _TIME = re.compile(r"\[\d{9,}\.\d+\]")

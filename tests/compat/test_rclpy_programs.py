@@ -12,6 +12,7 @@ from compat.rclpy_scenes import PROGRAMS, SCENES, file_of, under_rclpy, under_ro
 NOT_JAZZY = {
     "corners": "a call that is not answered in time gives None",
     "annotations": "rclpy.subscription has no MessageInfo",
+    "late goals": "a goal that is executed without an executor raises",
     "member talker, member listener": "init is no context manager",
     "function talker, lambda listener": "the message info has no publisher_gid",
     "publishers": "publishers are no context managers",
@@ -27,6 +28,7 @@ NOT_JAZZY = {
     "contexts": "init is no context manager",
     "life of a node": "nodes are no context managers",
     "lifecycle nodes": "a transition that is not allowed raises",
+    "managed node": "a transition that is not allowed raises",
     "no arguments": "types are printed by their names",
     "arguments": "types are printed by their names",
     "a file of parameters": "types are printed by their names",

@@ -148,6 +148,10 @@ class _Alias:
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         module = importlib.import_module(self.name)
+        if self.name.startswith("roslet.compat.rclpy."):
+            from roslet.compat.rclpy._found import complete
+
+            complete(module)
         self.spec = module.__spec__
         return module
 

@@ -8,6 +8,7 @@ their type (arrays), whatever is assigned to them. `message_class(name)` is an a
 from __future__ import annotations
 
 import array
+import os
 from typing import TYPE_CHECKING, Any
 
 from roslet.wire.arrays import TYPECODES
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 _adapted: set[type] = set()
+
+# Whether constructors refuse keywords that name no field, which rosidl's ignore unless this is set or `check_fields` given.
+_CHECK_FIELDS = os.environ.get("ROS_PYTHON_CHECK_FIELDS") == "1"
 
 # What rosidl calls the primitives that its definitions call otherwise.
 _SPELLINGS = {"float32": "float", "float64": "double", "bool": "boolean", "byte": "octet", "char": "uint8"}
@@ -201,9 +205,12 @@ def _constructor(kind: Any) -> Callable[..., None]:
         if not made:
             # The generated constructor is compiled at the first message, not at the import.
             made.append(before.make() if hasattr(before, "make") else before)
-        for name in kwargs:
-            if name not in names:
-                raise AssertionError(f"Invalid arguments passed to constructor: {name}")
+        if not kwargs.keys() <= names:
+            checked = kwargs.pop("check_fields", _CHECK_FIELDS)
+            unknown = sorted(kwargs.keys() - names)
+            if checked and unknown:
+                raise AssertionError(f"Invalid arguments passed to constructor: {', '.join(unknown)}")
+            kwargs = {name: value for name, value in kwargs.items() if name in names}
         made[0](self, **kwargs)
 
     # An error names what was called as Python names it.

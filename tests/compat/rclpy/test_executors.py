@@ -39,15 +39,15 @@ class Node:
     def __init__(self) -> None:
         self.executor: Executor | None = None
         self.entities: list[Entity] = []
-        self._polled = self.entities  # all are looked at in every turn
-        self._active: set[Entity] = set()
+        self._node_polled = self.entities  # all are looked at in every turn
+        self._node_active: set[Entity] = set()
 
     def add(self, entity: Any) -> Any:
         entity._belongs_to(self)
         self.entities.append(entity)
         return entity
 
-    def _entities(self) -> list[Entity]:
+    def _node_entities(self) -> list[Entity]:
         return self.entities
 
 

@@ -185,6 +185,17 @@ def test_a_client_follows_its_own_goals_only() -> None:
     goals.forget(uuid(1))
 
 
+def test_a_client_that_asks_for_no_results_may_send_goals_for_ever() -> None:
+    goals = ClientGoals(max_goals=2)
+    running = goals.send(uuid(0))
+    for number in range(1, 9):
+        goals.send(uuid(number))
+        goals.answered(uuid(number), True)
+        goals.told([(uuid(number), a.ABORTED)])
+    assert len(goals) == 2
+    assert goals.get(uuid(0)) is running
+
+
 def test_a_status_may_be_there_before_the_answer() -> None:
     goals = ClientGoals()
     goal = goals.send(uuid(1))

@@ -66,7 +66,7 @@ class Entity:
         """Have the executor of the node look at this entity. From any thread."""
         node = None if self._home is None else self._home()
         if node is not None:
-            node._active.add(self)
+            node._node_active.add(self)
             executor = node.executor
             if executor is not None:
                 executor.wake()

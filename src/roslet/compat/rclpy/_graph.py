@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class GraphOfNode:
     """Answers are what discovery has told so far."""
 
-    _network: RclpyNetwork
+    _node_network: RclpyNetwork
     context: Context
 
     def _node_check(self) -> None:
@@ -34,31 +34,31 @@ class GraphOfNode:
     def _node_ask(self, question: Any) -> Any:
         """`question(graph)`, with the loop's lock held. Raises InvalidHandle."""
         self._node_check()
-        network = self._network
+        network = self._node_network
         with network.reactor.lock:
             return question(network.graph)
 
     # -- nodes
 
-    def _nodes(self) -> list[Any]:
+    def _node_others(self) -> list[Any]:
         found: list[Any] = self._node_ask(lambda graph: graph.nodes())
         return found
 
     def get_node_names(self) -> list[str]:
         """The names of all nodes, without their namespaces."""
-        return [one.name for one in self._nodes()]
+        return [one.name for one in self._node_others()]
 
     def get_fully_qualified_node_names(self) -> list[str]:
         """The full names of all nodes."""
-        return [one.full_name for one in self._nodes()]
+        return [one.full_name for one in self._node_others()]
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         """(name, namespace) of all nodes."""
-        return [(one.name, one.namespace) for one in self._nodes()]
+        return [(one.name, one.namespace) for one in self._node_others()]
 
     def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
         """(name, namespace, enclave) of all nodes."""
-        return [(one.name, one.namespace, one.enclave) for one in self._nodes()]
+        return [(one.name, one.namespace, one.enclave) for one in self._node_others()]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Until there is a node of this name, for at most `timeout` seconds; whether there is one."""
@@ -68,7 +68,7 @@ class GraphOfNode:
         def there() -> bool:
             return fully_qualified_node_name in self.get_fully_qualified_node_names()
 
-        self._network.reactor.run_until(lambda: not self.context.ok() or there(), timeout, user=False)
+        self._node_network.reactor.run_until(lambda: not self.context.ok() or there(), timeout, user=False)
         return self.context.ok() and there()
 
     # -- topics and services
@@ -81,7 +81,7 @@ class GraphOfNode:
         """(service, types) of all services that somebody serves or calls."""
         return _united(self._node_ask(lambda graph: (graph.services(), graph.clients())))
 
-    def _of(self, name: str, namespace: str, question: Any) -> Named:
+    def _node_names_of(self, name: str, namespace: str, question: Any) -> Named:
         """Raises NodeNameNonExistentError."""
 
         def ask(graph: Graph) -> Any:
@@ -98,22 +98,26 @@ class GraphOfNode:
     ) -> Named:
         """(topic, types) that a node publishes. Raises NodeNameNonExistentError."""
         node = (node_name, node_namespace)
-        return self._of(*node, lambda graph: graph.topics(node, True, no_demangle))
+        return self._node_names_of(*node, lambda graph: graph.topics(node, True, no_demangle))
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> Named:
         """(topic, types) that a node subscribes. Raises NodeNameNonExistentError."""
         node = (node_name, node_namespace)
-        return self._of(*node, lambda graph: graph.topics(node, False, no_demangle))
+        return self._node_names_of(*node, lambda graph: graph.topics(node, False, no_demangle))
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> Named:
         """(service, types) that a node serves. Raises NodeNameNonExistentError."""
-        return self._of(node_name, node_namespace, lambda graph: graph.services((node_name, node_namespace)))
+        return self._node_names_of(
+            node_name, node_namespace, lambda graph: graph.services((node_name, node_namespace))
+        )
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> Named:
         """(service, types) that a node calls. Raises NodeNameNonExistentError."""
-        return self._of(node_name, node_namespace, lambda graph: graph.clients((node_name, node_namespace)))
+        return self._node_names_of(
+            node_name, node_namespace, lambda graph: graph.clients((node_name, node_namespace))
+        )
 
     # -- endpoints
 
@@ -141,15 +145,15 @@ class GraphOfNode:
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
         """What is known of the publishers of a topic; with `no_mangle` of a topic of DDS by its name there."""
-        return self._endpoints(topic_name, no_mangle, True)
+        return self._node_endpoints(topic_name, no_mangle, True)
 
     def get_subscriptions_info_by_topic(
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
         """What is known of the subscriptions of a topic."""
-        return self._endpoints(topic_name, no_mangle, False)
+        return self._node_endpoints(topic_name, no_mangle, False)
 
-    def _endpoints(self, topic: str, no_mangle: bool, writers: bool) -> list[TopicEndpointInfo]:
+    def _node_endpoints(self, topic: str, no_mangle: bool, writers: bool) -> list[TopicEndpointInfo]:
         if no_mangle:
             found = [
                 one

@@ -123,18 +123,18 @@ def to_description(message: Any) -> store.Descriptor:
 
 
 class ParametersOfNode:
-    """The part of `rclpy.node.Node` that is parameters."""
+    """The part of `rclpy.node.Node` that is parameters. Once the node is destroyed they can be asked for still; what
+    changes them raises InvalidHandle."""
 
-    _network: RclpyNetwork
-    _set_callbacks: dict[tuple[str, Any], list[Callable[[Any], Any]]]
+    _node_network: RclpyNetwork
+    _node_set_callbacks: dict[tuple[str, Any], list[Callable[[Any], Any]]]
 
     def _node_check(self) -> None:
         raise NotImplementedError
 
     @property
     def _node_store(self) -> store.Parameters:
-        self._node_check()
-        return self._network.parameters.store
+        return self._node_network.parameters.store
 
     # -- declaring
 
@@ -153,6 +153,7 @@ class ParametersOfNode:
         self, namespace: str, parameters: Sequence[Sequence[Any]], ignore_override: bool = False
     ) -> list[Parameter]:
         """Declare several, each (name), (name, value) or (name, value, descriptor), within a namespace of parameters."""
+        self._node_check()
         within = self._node_store
         found = []
         for given in parameters:
@@ -195,6 +196,7 @@ class ParametersOfNode:
 
     def undeclare_parameter(self, name: str) -> None:
         """Raises ParameterNotDeclaredException, ParameterImmutableException."""
+        self._node_check()
         within = self._node_store
         if not within.has(name):
             raise ParameterNotDeclaredException(name)
@@ -273,14 +275,15 @@ class ParametersOfNode:
         """Set each by itself; a SetParametersResult for each. Raises ParameterNotDeclaredException where one is not
         declared, TypeError for what is no Parameter."""
         _check_parameters(parameter_list)
-        return [self._set([one]) for one in parameter_list]
+        return [self._node_set([one]) for one in parameter_list]
 
     def set_parameters_atomically(self, parameter_list: Sequence[Parameter]) -> Any:
         """Set all or none; one SetParametersResult. Raises as `set_parameters`."""
         _check_parameters(parameter_list)
-        return self._set(parameter_list)
+        return self._node_set(parameter_list)
 
-    def _set(self, parameters: Sequence[Parameter]) -> Any:
+    def _node_set(self, parameters: Sequence[Parameter]) -> Any:
+        self._node_check()
         try:
             successful, reason = self._node_store.set_atomically([to_store(one) for one in parameters])
         except ParameterNotDeclared:
@@ -294,6 +297,7 @@ class ParametersOfNode:
         """Describe a parameter anew; its ParameterValue. `alternative_value`, a ParameterValue, is taken where the present
         one does not suit. Raises ParameterNotDeclaredException, ParameterImmutableException,
         InvalidParameterValueException."""
+        self._node_check()
         otherwise = None if alternative_value is None else services.from_value(name, alternative_value).value
         try:
             return services.to_value(
@@ -315,7 +319,7 @@ class ParametersOfNode:
             return [to_store(one) for one in callback([from_store(one) for one in parameters])]
 
         self._node_store.add_pre_set(before)
-        self._set_callbacks.setdefault(("pre", callback), []).append(before)
+        self._node_set_callbacks.setdefault(("pre", callback), []).append(before)
 
     def add_on_set_parameters_callback(self, callback: Callable[[list[Parameter]], Any]) -> None:
         """`callback(parameters)` gives a SetParametersResult: whether they may be set."""
@@ -325,7 +329,7 @@ class ParametersOfNode:
             return result.successful, result.reason
 
         self._node_store.add_on_set(check)
-        self._set_callbacks.setdefault(("on", callback), []).append(check)
+        self._node_set_callbacks.setdefault(("on", callback), []).append(check)
 
     def add_post_set_parameters_callback(self, callback: Callable[[list[Parameter]], None]) -> None:
         """`callback(parameters)` is told what has been set."""
@@ -334,22 +338,22 @@ class ParametersOfNode:
             callback([from_store(one) for one in parameters])
 
         self._node_store.add_post_set(after)
-        self._set_callbacks.setdefault(("post", callback), []).append(after)
+        self._node_set_callbacks.setdefault(("post", callback), []).append(after)
 
     def remove_pre_set_parameters_callback(self, callback: Callable[..., Any]) -> None:
         """Raises ValueError where it was not added."""
-        self._node_store.remove_pre_set(self._own("pre", callback))
+        self._node_store.remove_pre_set(self._node_callback("pre", callback))
 
     def remove_on_set_parameters_callback(self, callback: Callable[..., Any]) -> None:
         """Raises ValueError where it was not added."""
-        self._node_store.remove_on_set(self._own("on", callback))
+        self._node_store.remove_on_set(self._node_callback("on", callback))
 
     def remove_post_set_parameters_callback(self, callback: Callable[..., Any]) -> None:
         """Raises ValueError where it was not added."""
-        self._node_store.remove_post_set(self._own("post", callback))
+        self._node_store.remove_post_set(self._node_callback("post", callback))
 
-    def _own(self, when: str, callback: Any) -> Any:
-        made = self._set_callbacks.get((when, callback))
+    def _node_callback(self, when: str, callback: Any) -> Any:
+        made = self._node_set_callbacks.get((when, callback))
         if not made:
             raise ValueError("Callback is not in list")
         return made.pop()

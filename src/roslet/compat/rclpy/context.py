@@ -134,7 +134,7 @@ class Context:
                 node = one()
                 if node is not None:
                     # rclpy asks every second node itself: its list changes under its loop. Programs count the calls.
-                    (node._end if number % 2 else node.destroy_node)()
+                    (node._node_end if number % 2 else node.destroy_node)()
             self._ok = False
         for get in callbacks:
             callback = get()
@@ -180,7 +180,7 @@ def close_all() -> None:
         for one in list(context._nodes):
             node = one()
             if node is not None:
-                node._end()
+                node._node_end()
         context._ok = False
 
 

@@ -254,7 +254,7 @@ class Executor:
 
     def _entities(self) -> Iterator[Entity]:
         for node in self._nodes:
-            yield from node._entities()
+            yield from node._node_entities()
 
     def _may_run(self, entity: Entity) -> bool:
         group = entity.callback_group
@@ -290,7 +290,7 @@ class Executor:
         with self._lock:
             nearest = None
             for node in self._nodes:
-                for entity in node._polled:
+                for entity in node._node_polled:
                     if self.can_execute(entity):
                         nearest = _least(nearest, entity._seconds())
             return nearest

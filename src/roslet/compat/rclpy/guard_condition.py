@@ -35,7 +35,7 @@ class GuardCondition(Entity):
         self._notify()
 
     def _ready(self) -> bool:
-        return self._triggered
+        return self._triggered and not self._destroyed
 
     def _take(self) -> Any:
         with self._lock:

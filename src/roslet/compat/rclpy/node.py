@@ -107,47 +107,49 @@ class Node(ParametersOfNode, GraphOfNode):
         namespace = namespace or "/"
         namespace = namespace if namespace.startswith("/") else "/" + namespace
         validate_namespace(namespace)
-        self._destroyed = False
+        self._node_destroyed = False
         self._node_executor: weakref.ref[Executor] | None = None
         self._publishers: list[Publisher] = []
-        self._entity_lists: dict[type, list[Any]] = {
+        self._node_entity_lists: dict[type, list[Any]] = {
             kind: [] for kind in (Subscription, Client, Service, Timer, GuardCondition, Entity)
         }
-        self._polled: tuple[Entity, ...] = ()
-        self._order: dict[Entity, int] = {}
-        self._active: set[Entity] = set()  # those that have notified and may be ready
+        self._node_polled: tuple[Entity, ...] = ()
+        self._node_order: dict[Entity, int] = {}
+        self._node_active: set[Entity] = set()  # those that have notified and may be ready
         self._node_rates: list[Rate] = []
-        self._set_callbacks = {}
+        self._node_set_callbacks = {}
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
-        self._own_group = ReentrantCallbackGroup()
-        self._validate_qos(rosout_qos_profile)
+        self._node_own_group = ReentrantCallbackGroup()
+        self._node_validate_qos(rosout_qos_profile)
         try:
             arguments = merged(
                 self._context.arguments.ros if use_global_arguments else None, list(cli_args or [])
             )
-            self._inner = Inner(node_name, namespace, self._context.get_domain_id(), arguments)
+            self._node_inner = Inner(node_name, namespace, self._context.get_domain_id(), arguments)
         except InvalidName as error:
             raise RCLError(f"failed to create a node: {error}") from None
-        self._network = self._inner.network_of
-        self._logger_name = logger_name(self._network.name)
+        self._node_network = self._node_inner.network_of
+        self._node_logger_name = logger_name(self._node_network.name)
         self._node_sink: Any = None
         self._context.track_node(self)
         overrides = {
-            **self._network.arguments_overrides(),
+            **self._node_network.arguments_overrides(),
             **{one.name: one.value for one in parameter_overrides or ()},
         }
-        self._network.parameters = NodeParameters(self._network, overrides, allow_undeclared_parameters)
+        self._node_network.parameters = NodeParameters(
+            self._node_network, overrides, allow_undeclared_parameters
+        )
         self._clock = ROSClock()
-        self._inner.clock_of = self._clock
-        if enable_rosout and self._network.arguments.switches.get("rosout-logs", True):
-            self._log_to_rosout(self._validate_qos(rosout_qos_profile))
+        self._node_inner.clock_of = self._clock
+        if enable_rosout and self._node_network.arguments.switches.get("rosout-logs", True):
+            self._node_log_to_rosout(self._node_validate_qos(rosout_qos_profile))
         events = self.create_publisher(
             message_class("rcl_interfaces/msg/ParameterEvent"),
             "/parameter_events",
             qos_profile_parameter_events,
         )
-        self._network.parameters._events = events._endpoint
+        self._node_network.parameters._events = events._endpoint
         if automatically_declare_parameters_from_overrides:
             describe = message_class("rcl_interfaces/msg/ParameterDescriptor")
             self.declare_parameters(
@@ -158,29 +160,29 @@ class Node(ParametersOfNode, GraphOfNode):
         self._time_source = TimeSource(node=self)
         self._time_source.attach_clock(self._clock)
         if start_parameter_services:
-            for service in self._network.parameters.serve(self._own_group):
-                self._adopt(Entity, service)
-        self._offer_descriptions()
+            for service in self._node_network.parameters.serve(self._node_own_group):
+                self._node_adopt(Entity, service)
+        self._node_offer_descriptions()
         if enable_logger_service:
             from roslet.compat.rclpy.logging_service import LoggingService
 
-            self._logging_service = LoggingService(self)
+            self._node_logging_service = LoggingService(self)
 
-    def _offer_descriptions(self) -> None:
+    def _node_offer_descriptions(self) -> None:
         if not self.has_parameter(_DESCRIBE):
             describe = message_class("rcl_interfaces/msg/ParameterDescriptor")
             self.declare_parameter(_DESCRIBE, True, describe(read_only=True))
         if self.get_parameter(_DESCRIBE).value:
-            endpoint: Any = self._network.service(
-                self._network.own_service("get_type_description"),
+            endpoint: Any = self._node_network.service(
+                self._node_network.own_service("get_type_description"),
                 message_class(descriptions.SERVICE),
                 descriptions.describe,
             )
-            self._adopt(Entity, Requests(endpoint, self._own_group, None))
+            self._node_adopt(Entity, Requests(endpoint, self._node_own_group, None))
 
-    def _log_to_rosout(self, qos: QoSProfile) -> None:
+    def _node_log_to_rosout(self, qos: QoSProfile) -> None:
         kind = message_class("rcl_interfaces/msg/Log")
-        publisher = self._network.publisher(self._network.resolve("/rosout"), kind, qos.to_roslet())
+        publisher = self._node_network.publisher(self._node_network.resolve("/rosout"), kind, qos.to_roslet())
 
         def sink(level: int, name: str, text: str, file: str, function: str, line: int, now: int) -> None:
             entry = kind(level=level, name=name, msg=text, file=file, function=function, line=line)
@@ -191,32 +193,32 @@ class Node(ParametersOfNode, GraphOfNode):
                 return
 
         self._node_sink = sink
-        rcutils_logger.add_sink(self._logger_name, sink)
+        rcutils_logger.add_sink(self._node_logger_name, sink)
 
     # -- what it is
 
     def _node_check(self) -> None:
-        if self._destroyed:
+        if self._node_destroyed:
             raise InvalidHandle()
 
     def get_name(self) -> str:
         """Its name, without the namespace. Raises InvalidHandle once it is destroyed, as all that follows."""
         self._node_check()
-        return self._network.base_name
+        return self._node_network.base_name
 
     def get_namespace(self) -> str:
         """Its namespace."""
         self._node_check()
-        return self._network.namespace
+        return self._node_network.namespace
 
     def get_fully_qualified_name(self) -> str:
         """Namespace and name."""
         self._node_check()
-        return self._network.name
+        return self._node_network.name
 
     def get_logger(self) -> RcutilsLogger:
         """Its logger."""
-        return get_logger(self._logger_name)
+        return get_logger(self._node_logger_name)
 
     def get_clock(self) -> Clock:
         """Its clock: the system's time, or that of /clock where the parameter use_sim_time is true."""
@@ -260,35 +262,35 @@ class Node(ParametersOfNode, GraphOfNode):
 
     @property
     def subscriptions(self) -> Iterator[Subscription]:
-        yield from list(self._entity_lists[Subscription])
+        yield from list(self._node_entity_lists[Subscription])
 
     @property
     def clients(self) -> Iterator[Client]:
-        yield from list(self._entity_lists[Client])
+        yield from list(self._node_entity_lists[Client])
 
     @property
     def services(self) -> Iterator[Service]:
-        yield from list(self._entity_lists[Service])
+        yield from list(self._node_entity_lists[Service])
 
     @property
     def timers(self) -> Iterator[Timer]:
-        yield from list(self._entity_lists[Timer])
+        yield from list(self._node_entity_lists[Timer])
 
     @property
     def guards(self) -> Iterator[GuardCondition]:
-        yield from list(self._entity_lists[GuardCondition])
+        yield from list(self._node_entity_lists[GuardCondition])
 
     @property
     def waitables(self) -> Iterator[Entity]:
-        yield from list(self._entity_lists[Entity])
+        yield from list(self._node_entity_lists[Entity])
 
     # -- what executors run
 
-    def _entities(self) -> Iterable[Entity]:
+    def _node_entities(self) -> Iterable[Entity]:
         """Those that may be ready, in the order in which they are to run."""
-        active = self._active
+        active = self._node_active
         if not active:
-            return self._polled
+            return self._node_polled
         found = []
         for entity in list(active):
             # First: what notifies from here on is looked at again.
@@ -296,45 +298,45 @@ class Node(ParametersOfNode, GraphOfNode):
             if entity._ready():
                 active.add(entity)
                 found.append(entity)
-        order = self._order
-        return [*self._polled, *sorted(found, key=lambda entity: order.get(entity, 0))]
+        order = self._node_order
+        return [*self._node_polled, *sorted(found, key=lambda entity: order.get(entity, 0))]
 
-    def _adopt(self, kind: type, entity: Any) -> Any:
+    def _node_adopt(self, kind: type, entity: Any) -> Any:
         entity._belongs_to(self)
-        self._entity_lists[kind].append(entity)
+        self._node_entity_lists[kind].append(entity)
         if not entity._polled:
-            self._active.add(entity)
-        self._refresh()
+            self._node_active.add(entity)
+        self._node_refresh()
         return entity
 
-    def _disown(self, kind: type, entity: Any) -> bool:
-        if entity not in self._entity_lists[kind]:
+    def _node_disown(self, kind: type, entity: Any) -> bool:
+        if entity not in self._node_entity_lists[kind]:
             return False
-        self._entity_lists[kind].remove(entity)
-        self._drop_handlers(entity)
+        self._node_entity_lists[kind].remove(entity)
+        self._node_drop_handlers(entity)
         entity.destroy()
-        self._refresh()
+        self._node_refresh()
         return True
 
-    def _drop_handlers(self, owner: Any) -> None:
+    def _node_drop_handlers(self, owner: Any) -> None:
         for handler in getattr(owner, "event_handlers", ()):
-            self._entity_lists[Entity].remove(handler)
+            self._node_entity_lists[Entity].remove(handler)
 
-    def _refresh(self) -> None:
+    def _node_refresh(self) -> None:
         order = (Timer, Subscription, GuardCondition, Client, Service, Entity)
-        entities = [entity for kind in order for entity in self._entity_lists[kind]]
-        self._polled = tuple(entity for entity in entities if entity._polled)
-        self._order = {entity: number for number, entity in enumerate(entities)}
+        entities = [entity for kind in order for entity in self._node_entity_lists[kind]]
+        self._node_polled = tuple(entity for entity in entities if entity._polled)
+        self._node_order = {entity: number for number, entity in enumerate(entities)}
         self._wake_executor()
 
     def add_waitable(self, waitable: Any) -> None:
         """Have the executor ask this waitable too."""
-        self._adopt(Entity, waitable)
+        self._node_adopt(Entity, waitable)
 
     def remove_waitable(self, waitable: Any) -> None:
         """Ask it no more."""
-        self._entity_lists[Entity].remove(waitable)
-        self._refresh()
+        self._node_entity_lists[Entity].remove(waitable)
+        self._node_refresh()
 
     # -- names
 
@@ -349,7 +351,7 @@ class Node(ParametersOfNode, GraphOfNode):
     def _node_resolve(self, name: str, kind: str, only_expand: bool = False) -> str:
         self._node_check()
         validate_topic_name(name, is_service=kind == REQUEST)
-        network = self._network
+        network = self._node_network
         try:
             if only_expand:
                 return expand(name, network.base_name, network.namespace)
@@ -360,7 +362,7 @@ class Node(ParametersOfNode, GraphOfNode):
             raise RCLError(f"failed to resolve {name}: {error}") from None
 
     @staticmethod
-    def _validate_qos(qos_or_depth: QoSProfile | int) -> QoSProfile:
+    def _node_validate_qos(qos_or_depth: QoSProfile | int) -> QoSProfile:
         if isinstance(qos_or_depth, QoSProfile):
             return qos_or_depth
         if not isinstance(qos_or_depth, int) or isinstance(qos_or_depth, bool):
@@ -383,18 +385,20 @@ class Node(ParametersOfNode, GraphOfNode):
         publisher_class: type[Publisher] = Publisher,
     ) -> Any:
         """A publisher. Raises AttributeError where `msg_type` is no message class, InvalidTopicNameException."""
-        qos = self._validate_qos(qos_profile)
+        qos = self._node_validate_qos(qos_profile)
         check_is_valid_msg_type(msg_type)
         full = self._node_resolve(topic, TOPIC)
         qos = declare_qos_parameters("publisher", self, full, qos, qos_overriding_options)
-        endpoint: Any = self._network.publisher(full, msg_type, fitting(qos, self._network, full, True))
-        publisher = publisher_class(endpoint, msg_type, topic, qos, self._logger_name)
+        endpoint: Any = self._node_network.publisher(
+            full, msg_type, fitting(qos, self._node_network, full, True)
+        )
+        publisher = publisher_class(endpoint, msg_type, topic, qos, self._node_logger_name)
         callbacks = PublisherEventCallbacks() if event_callbacks is None else event_callbacks
         publisher.event_handlers = callbacks.create_event_handlers(
-            callback_group or self._default_callback_group, endpoint, full, self._logger_name
+            callback_group or self._default_callback_group, endpoint, full, self._node_logger_name
         )
         for handler in publisher.event_handlers:
-            self._adopt(Entity, handler)
+            self._node_adopt(Entity, handler)
         self._publishers.append(publisher)
         return publisher
 
@@ -415,26 +419,26 @@ class Node(ParametersOfNode, GraphOfNode):
 
         Raises as `create_publisher`, RuntimeError for what is no callback or asks for a content filter.
         """
-        qos = self._validate_qos(qos_profile)
+        qos = self._node_validate_qos(qos_profile)
         check_is_valid_msg_type(msg_type)
         full = self._node_resolve(topic, TOPIC)
         if content_filter_options is not None:
             raise RuntimeError("roslet has no content filters")
         qos = declare_qos_parameters("subscription", self, full, qos, qos_overriding_options)
         group = callback_group or self._default_callback_group
-        endpoint: Any = self._network.subscription(
-            full, msg_type, None, fitting(qos, self._network, full, False), MAX_FRAME
+        endpoint: Any = self._node_network.subscription(
+            full, msg_type, None, fitting(qos, self._node_network, full, False), MAX_FRAME
         )
         try:
-            made = Subscription(endpoint, msg_type, topic, callback, group, qos, raw, self._logger_name)
+            made = Subscription(endpoint, msg_type, topic, callback, group, qos, raw, self._node_logger_name)
         except RuntimeError:
             endpoint.close()
             raise
         callbacks = SubscriptionEventCallbacks() if event_callbacks is None else event_callbacks
-        made.event_handlers = callbacks.create_event_handlers(group, endpoint, full, self._logger_name)
+        made.event_handlers = callbacks.create_event_handlers(group, endpoint, full, self._node_logger_name)
         for handler in made.event_handlers:
-            self._adopt(Entity, handler)
-        self._adopt(Subscription, made)
+            self._node_adopt(Entity, handler)
+        self._node_adopt(Subscription, made)
         return made
 
     def create_client(
@@ -448,10 +452,10 @@ class Node(ParametersOfNode, GraphOfNode):
         """A client. Raises AttributeError where `srv_type` is no service class, InvalidServiceNameException."""
         check_is_valid_srv_type(srv_type)
         full = self._node_resolve(srv_name, REQUEST)
-        endpoint = self._network.client(full, srv_type, qos=qos_profile.to_roslet())
+        endpoint = self._node_network.client(full, srv_type, qos=qos_profile.to_roslet())
         group = callback_group or self._default_callback_group
-        made = Client(endpoint, self._context, srv_type, srv_name, group, qos_profile, self._logger_name)
-        self._adopt(Client, made)
+        made = Client(endpoint, self._context, srv_type, srv_name, group, qos_profile, self._node_logger_name)
+        self._node_adopt(Client, made)
         return made
 
     def create_service(
@@ -466,10 +470,12 @@ class Node(ParametersOfNode, GraphOfNode):
         """A service: `callback(request, response)` returns the response. Raises as `create_client`."""
         check_is_valid_srv_type(srv_type)
         full = self._node_resolve(srv_name, REQUEST)
-        endpoint: Any = self._network.service(full, srv_type, lambda request: None, qos_profile.to_roslet())
+        endpoint: Any = self._node_network.service(
+            full, srv_type, lambda request: None, qos_profile.to_roslet()
+        )
         group = callback_group or self._default_callback_group
-        made = Service(endpoint, srv_type, srv_name, callback, group, qos_profile, self._logger_name)
-        self._adopt(Service, made)
+        made = Service(endpoint, srv_type, srv_name, callback, group, qos_profile, self._node_logger_name)
+        self._node_adopt(Service, made)
         return made
 
     def create_timer(
@@ -491,7 +497,7 @@ class Node(ParametersOfNode, GraphOfNode):
             context=self._context,
             autostart=autostart,
         )
-        self._adopt(Timer, made)
+        self._node_adopt(Timer, made)
         return made
 
     def create_guard_condition(
@@ -500,7 +506,7 @@ class Node(ParametersOfNode, GraphOfNode):
         """A guard condition: `callback()` when it was triggered."""
         self._node_check()
         made = GuardCondition(callback, callback_group or self._default_callback_group, self._context)
-        self._adopt(GuardCondition, made)
+        self._node_adopt(GuardCondition, made)
         return made
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
@@ -519,59 +525,59 @@ class Node(ParametersOfNode, GraphOfNode):
         if publisher not in self._publishers:
             return False
         self._publishers.remove(publisher)
-        self._drop_handlers(publisher)
+        self._node_drop_handlers(publisher)
         publisher.destroy()
-        self._refresh()
+        self._node_refresh()
         return True
 
     def destroy_subscription(self, subscription: Subscription) -> bool:
-        return self._disown(Subscription, subscription)
+        return self._node_disown(Subscription, subscription)
 
     def destroy_client(self, client: Client) -> bool:
-        return self._disown(Client, client)
+        return self._node_disown(Client, client)
 
     def destroy_service(self, service: Service) -> bool:
-        return self._disown(Service, service)
+        return self._node_disown(Service, service)
 
     def destroy_timer(self, timer: Timer) -> bool:
-        return self._disown(Timer, timer)
+        return self._node_disown(Timer, timer)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
-        return self._disown(GuardCondition, guard)
+        return self._node_disown(GuardCondition, guard)
 
     def destroy_rate(self, rate: Rate) -> bool:
         if rate not in self._node_rates:
             return False
         self._node_rates.remove(rate)
-        self._disown(Timer, rate._timer)
+        self._node_disown(Timer, rate._timer)
         rate.destroy()
         return True
 
     def destroy_node(self) -> None:
         """Destroy all that is its own; it disappears from the graph. Twice is allowed."""
-        self._end()
+        self._node_end()
 
-    def _end(self) -> None:
+    def _node_end(self) -> None:
         """The same when its context ends, without asking a subclass."""
-        if self._destroyed:
+        if self._node_destroyed:
             return
         if self._node_sink is not None:
-            rcutils_logger.remove_sink(self._logger_name, self._node_sink)
-        self._destroyed = True
+            rcutils_logger.remove_sink(self._node_logger_name, self._node_sink)
+        self._node_destroyed = True
         self._context.untrack_node(self)
-        self._network.follow = None
+        self._node_network.follow = None
         for rate in self._node_rates:
             rate.destroy()
-        for kind, entities in self._entity_lists.items():
-            self._entity_lists[kind] = []
+        for kind, entities in self._node_entity_lists.items():
+            self._node_entity_lists[kind] = []
             for entity in entities:
                 entity.destroy()
         publishers, self._publishers = self._publishers, []
         # Not before the node within has let out what was published.
-        self._inner.close()
+        self._node_inner.close()
         for publisher in publishers:
             publisher.destroy()
-        self._refresh()
+        self._node_refresh()
 
     def __enter__(self) -> Self:
         return self
@@ -585,7 +591,7 @@ class Node(ParametersOfNode, GraphOfNode):
         self.destroy_node()
 
     def __repr__(self) -> str:
-        return f"<{type(self).__module__}.{type(self).__name__} {self._network.name}>"
+        return f"<{type(self).__module__}.{type(self).__name__} {self._node_network.name}>"
 
 
 __all__ = [

@@ -58,7 +58,7 @@ class TimeSource:
     def attach_node(self, node: Any) -> None:
         """Follow this node's parameter use_sim_time, which is declared where it is not yet."""
         self._node = weakref.ref(node)
-        node._network.follow = self._follow
+        node._node_network.follow = self._follow
         if not node.has_parameter(USE_SIM_TIME_NAME):
             node.declare_parameter(USE_SIM_TIME_NAME, False)
         else:

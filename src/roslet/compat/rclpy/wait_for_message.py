@@ -15,7 +15,7 @@ def wait_for_message(
     context = node.context
     subscription = node.create_subscription(msg_type, topic, lambda _: None, qos_profile)
     try:
-        node._network.reactor.run_until(
+        node._node_network.reactor.run_until(
             lambda: subscription._ready() or not context.ok(),
             None if time_to_wait < 0 else time_to_wait,
             user=False,

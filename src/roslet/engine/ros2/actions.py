@@ -306,15 +306,16 @@ class ClientGoals:
         return len(self._goals)
 
     def send(self, uuid: bytes, owner: "Any" = None) -> ClientGoal:
-        """A goal that is being sent. Where there are too many, those that have ended are forgotten, although nobody asked
-        for their results. Raises ValueError where the id is in use, or too many have not ended."""
+        """A goal that is being sent. Where there are too many, those are forgotten that have ended and whose results
+        nobody got. Raises ValueError where the id is in use, or none has ended."""
         if uuid in self._goals:
             raise ValueError("the goal's id is in use")
         if len(self._goals) >= self.max_goals:
-            for ended in [one.uuid for one in self._goals.values() if one.status >= SUCCEEDED]:
-                del self._goals[ended]
-        if len(self._goals) >= self.max_goals:
-            raise ValueError("%d goals have not ended" % len(self._goals))
+            ended = [one for one in self._goals.values() if one.status >= SUCCEEDED]
+            if not ended:
+                raise ValueError("%d goals have not ended" % len(self._goals))
+            for one in ended:
+                self.forget(one.uuid)
         goal = self._goals[uuid] = ClientGoal(uuid, owner)
         return goal
 

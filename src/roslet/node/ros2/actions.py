@@ -25,6 +25,7 @@ from roslet.errors import CallTimeout, NodeClosed, RosletError
 from roslet.node.convert import message_of
 from roslet.node.future import Future
 from roslet.node.qos import QoS
+from roslet.node.ros2 import qos as presets
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -37,8 +38,16 @@ if TYPE_CHECKING:
     from roslet.node.ros2.network import Ros2Network
     from roslet.node.services import Client
 
-FEEDBACK = QoS(10)
-STATUS = QoS(1, durability="transient_local")
+
+class ActionQoS:
+    """The quality of service of an action's channels; give one what is to be otherwise."""
+
+    send_goal = cancel_goal = get_result = presets.SERVICES
+    feedback = QoS(10)
+    status = QoS(1, durability="transient_local")
+
+
+DEFAULT = ActionQoS()
 
 
 class GoalRejected(RosletError):
@@ -115,6 +124,7 @@ class ActionServer:
         on_goal: Callable[[Any], object] | None,
         on_cancel: Callable[[ServerGoal], object] | None,
         result_timeout: float | None,
+        qos: ActionQoS = DEFAULT,
     ) -> None:
         if (handler is None) == (accepted is None):
             raise TypeError(f"the action server of {name} needs either a handler or `accepted`")
@@ -130,12 +140,12 @@ class ActionServer:
         self._alarm: Timer | None = None
         self._closed = False
         names = action_names(name, action_type._type)
-        self._feedback = network.publisher(names.feedback[0], action_type.FeedbackMessage, FEEDBACK)
-        self._status = network.publisher(names.status[0], names.status[1], STATUS)
+        self._feedback = network.publisher(names.feedback[0], action_type.FeedbackMessage, qos.feedback)
+        self._status = network.publisher(names.status[0], names.status[1], qos.status)
         self._services = [
-            network.service(names.send_goal[0], action_type.SendGoal, self._send_goal),
-            network.service(names.cancel_goal[0], names.cancel_goal[1], self._cancel),
-            network.service(names.get_result[0], action_type.GetResult, self._get_result),
+            network.service(names.send_goal[0], action_type.SendGoal, self._send_goal, qos.send_goal),
+            network.service(names.cancel_goal[0], names.cancel_goal[1], self._cancel, qos.cancel_goal),
+            network.service(names.get_result[0], action_type.GetResult, self._get_result, qos.get_result),
         ]
         self._publish_status()
 
@@ -341,7 +351,7 @@ class ClientGoal:
 class ActionClient:
     """Sends goals. Made by `Node.action_client`. Many may be under way."""
 
-    def __init__(self, network: Ros2Network, name: str, action_type: Any) -> None:
+    def __init__(self, network: Ros2Network, name: str, action_type: Any, qos: ActionQoS = DEFAULT) -> None:
         self.name = name
         self.type = action_type
         self.node = network.node
@@ -349,14 +359,14 @@ class ActionClient:
         self._goals = ClientGoals()
         self._closed = False
         names = action_names(name, action_type._type)
-        self._send = network.client(names.send_goal[0], action_type.SendGoal)
-        self._cancel_goal = network.client(names.cancel_goal[0], names.cancel_goal[1])
-        self._get_result = network.client(names.get_result[0], action_type.GetResult)
+        self._send = network.client(names.send_goal[0], action_type.SendGoal, qos=qos.send_goal)
+        self._cancel_goal = network.client(names.cancel_goal[0], names.cancel_goal[1], qos=qos.cancel_goal)
+        self._get_result = network.client(names.get_result[0], action_type.GetResult, qos=qos.get_result)
         self._subscriptions = [
             network.subscription(
-                names.feedback[0], action_type.FeedbackMessage, self._feedback_came, FEEDBACK
+                names.feedback[0], action_type.FeedbackMessage, self._feedback_came, qos.feedback
             ),
-            network.subscription(names.status[0], names.status[1], self._status_came, STATUS),
+            network.subscription(names.status[0], names.status[1], self._status_came, qos.status),
         ]
 
     def ready(self) -> bool:

@@ -77,8 +77,12 @@ class FibonacciClient(Node):
 
     def run(self, order, cancel=False):
         feedback = []
+
+        async def note(message):
+            feedback.append(message)
+
         future = self._action_client.send_goal_async(
-            Fibonacci.Goal(order=order), feedback_callback=lambda message: feedback.append(message)
+            Fibonacci.Goal(order=order), feedback_callback=note if order % 2 else feedback.append
         )
         handle = wait(future)
         if not handle.accepted:

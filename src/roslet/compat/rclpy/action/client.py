@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from roslet.compat.interfaces import message_class
 from roslet.compat.rclpy._entity import Entity
+from roslet.compat.rclpy.action._qos import FEEDBACK, action_qos
 from roslet.compat.rclpy.client import Inbox, wait_done
+from roslet.compat.rclpy.qos import (
+    QoSProfile,
+    qos_profile_action_status_default,
+    qos_profile_services_default,
+)
 from roslet.compat.rclpy.task import Future
 from roslet.compat.rclpy.type_support import check_is_valid_action_type
 from roslet.engine.ros2.actions import UNKNOWN
@@ -86,25 +92,21 @@ class ClientGoalHandle:
         def ended(response: Any) -> Any:
             client._endpoint._goals.result(self._goal.uuid, response.status)
             self._goal.status = response.status or self._goal.status
-            client._feedback.pop(self._goal.uuid, None)
             return response
 
         return client._call(client._endpoint._get_result, request, ended)
 
 
 class _Endpoint(roslet.ActionClient):
-    """roslet's action client, with feedback for the one who asks."""
+    """roslet's action client, whose callbacks get the whole feedback message."""
 
-    owner: ActionClient
-
-    def _feedback_came(self, message: Any) -> None:
-        callback = self.owner._feedback.get(bytes(message.goal_id.uuid))
-        if callback is not None:
-            callback(message)
+    def _feedback_came(self, message: Any) -> Any:
+        goal = self._goals.get(bytes(message.goal_id.uuid))
+        return None if goal is None or goal.owner is None else goal.owner(message)
 
 
 class ActionClient:
-    """Sends goals. Profiles of quality of service are taken for those of rclpy's defaults, whatever is given."""
+    """Sends goals. The profiles are the qualities of service of its channels."""
 
     def __init__(
         self,
@@ -113,29 +115,33 @@ class ActionClient:
         action_name: str,
         *,
         callback_group: CallbackGroup | None = None,
-        goal_service_qos_profile: Any = None,
-        result_service_qos_profile: Any = None,
-        cancel_service_qos_profile: Any = None,
-        feedback_sub_qos_profile: Any = None,
-        status_sub_qos_profile: Any = None,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_sub_qos_profile: QoSProfile = FEEDBACK,
+        status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
     ) -> None:
         check_is_valid_action_type(action_type)
         self._node = node
         self._action_type = action_type
         self._action_name = action_name
-        self._feedback: dict[bytes, Callable[[Any], Any]] = {}
         full = node.resolve_service_name(action_name)
-        self._endpoint = _Endpoint(node._network, full, action_type)
-        self._endpoint.owner = self
-        self._inbox: Inbox = node._adopt(Entity, Inbox(callback_group or node.default_callback_group))
+        qos = action_qos(
+            goal_service_qos_profile,
+            cancel_service_qos_profile,
+            result_service_qos_profile,
+            feedback_sub_qos_profile,
+            status_sub_qos_profile,
+        )
+        self._endpoint = _Endpoint(node._node_network, full, action_type, qos)
+        self._inbox: Inbox = node._node_adopt(Entity, Inbox(callback_group or node.default_callback_group))
         for subscription in self._endpoint._subscriptions:
             self._follow(subscription)
 
     def _follow(self, subscription: Any) -> None:
-        def deliver() -> None:
+        def deliver() -> Any:
             found = subscription.take_one()
-            if found is not None:
-                subscription._callback(found[0])
+            return None if found is None else subscription._callback(found[0])
 
         with self._endpoint._network.reactor.lock:
             subscription.arrived = lambda: self._inbox.put(deliver)
@@ -159,8 +165,9 @@ class ActionClient:
         feedback_callback: Callable[[Any], Any] | None = None,
         goal_uuid: Any = None,
     ) -> Future[ClientGoalHandle]:
-        """A future of a ClientGoalHandle, accepted or not. `feedback_callback(message)` gets the whole feedback message.
-        Raises TypeError for what is no goal message, RuntimeError where the id is in use."""
+        """A future of a ClientGoalHandle, accepted or not. `feedback_callback(message)` gets the whole feedback message; it
+        may be a coroutine function. Raises TypeError for what is no goal message, RuntimeError where the id is in use or
+        1024 goals have not ended."""
         if not isinstance(goal, self._action_type.Goal):
             raise TypeError(f"expected a goal message, not {type(goal).__name__}")
         uuid = os.urandom(16) if goal_uuid is None else bytes(goal_uuid.uuid)
@@ -169,17 +176,13 @@ class ActionClient:
         goals = self._endpoint._goals
         with self._endpoint._network.reactor.lock:
             try:
-                sent = goals.send(uuid)
+                sent = goals.send(uuid, feedback_callback)
             except ValueError as error:
-                raise RuntimeError(f"Goal ID already in use: {error}") from None
-        if feedback_callback is not None:
-            self._feedback[uuid] = feedback_callback
+                raise RuntimeError(f"{self._action_name}: {error}") from None
 
         def answered(response: Any) -> ClientGoalHandle:
             stamp = response.stamp.sec * 1_000_000_000 + response.stamp.nanosec
             goals.answered(uuid, bool(response.accepted), stamp)
-            if not response.accepted:
-                self._feedback.pop(uuid, None)
             return ClientGoalHandle(self, sent, response)
 
         return self._call(self._endpoint._send, request, answered)
@@ -200,7 +203,7 @@ class ActionClient:
 
     def destroy(self) -> None:
         """Send no more. Twice is allowed."""
-        self._node._disown(Entity, self._inbox)
+        self._node._node_disown(Entity, self._inbox)
         self._endpoint.close()
 
     def __enter__(self) -> ActionClient:

@@ -12,8 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 from roslet.compat.interfaces import message_class
 from roslet.compat.rclpy._entity import Entity
+from roslet.compat.rclpy.action._qos import FEEDBACK, action_qos
 from roslet.compat.rclpy.exceptions import RCLError
 from roslet.compat.rclpy.executors import await_or_execute
+from roslet.compat.rclpy.qos import (
+    QoSProfile,
+    qos_profile_action_status_default,
+    qos_profile_services_default,
+)
 from roslet.compat.rclpy.service import Requests, Then
 from roslet.compat.rclpy.type_support import check_is_valid_action_type
 from roslet.engine.ros2.actions import (
@@ -23,6 +29,7 @@ from roslet.engine.ros2.actions import (
     CANCELING,
     EXECUTE,
     SUCCEED,
+    UNKNOWN,
     InvalidTransition,
 )
 from roslet.errors import NodeClosed
@@ -76,18 +83,18 @@ class ServerGoalHandle:
 
     @property
     def is_active(self) -> bool:
-        """Whether it has not ended."""
-        return self._goal.active
+        """Whether it has not ended, and its server is there."""
+        return self._goal.active and not self._server._endpoint._closed
 
     @property
     def is_cancel_requested(self) -> bool:
         """Whether it is to be cancelled."""
-        return self._goal.status == CANCELING
+        return self.status == CANCELING
 
     @property
     def status(self) -> int:
-        """As action_msgs/msg/GoalStatus numbers it."""
-        return self._goal.status
+        """As action_msgs/msg/GoalStatus numbers it; unknown once its server is destroyed."""
+        return UNKNOWN if self._server._endpoint._closed else self._goal.status
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
         """Have the executor call `execute_callback(self)`, the server's where None. What it returns is the result."""
@@ -105,7 +112,8 @@ class ServerGoalHandle:
             return
 
     def succeed(self) -> None:
-        """It is done. Raises RCLError where it has ended, or does not run; likewise the following."""
+        """It is done. Raises RCLError where it has ended, or does not run; does nothing where the server is destroyed.
+        Likewise the following."""
         self._server._happens(self._goal, SUCCEED)
 
     def abort(self) -> None:
@@ -152,7 +160,7 @@ class _Endpoint(roslet.ActionServer):
             answer = GoalResponse.REJECT
         stamp = self.node.now().to_nsec()
         response = {
-            "accepted": answer is GoalResponse.ACCEPT and self._takes(uuid),
+            "accepted": answer is GoalResponse.ACCEPT and not self._closed and self._takes(uuid),
             "stamp": self._network.stamp(stamp),
         }
         if not response["accepted"]:
@@ -169,12 +177,14 @@ class _Endpoint(roslet.ActionServer):
             code, found = self._goals.cancel(bytes(info.goal_id.uuid), stamp)
         canceling = []
         for goal in found:
+            if self._goals.get(goal.uuid) is None:
+                continue  # its result has expired while another's callback was awaited
             answer = await await_or_execute(self.owner._cancel_callback, goal.owner)
             if answer is CancelResponse.ACCEPT:
                 try:
                     self._apply(goal, CANCEL_GOAL)
-                except InvalidTransition:
-                    continue  # it has ended meanwhile
+                except (InvalidTransition, NodeClosed):
+                    continue  # it has ended meanwhile, or the server has
                 canceling.append(self._network.goal_info(goal.uuid, goal.stamp))
         return {
             "return_code": code,  # rclpy says nothing of rejection but that no goal is named
@@ -191,7 +201,7 @@ class ActionServer:
     cancel_callback(goal_handle)            gives a CancelResponse; by default nothing is cancelled
     result_timeout                          seconds that a result is kept
 
-    The profiles of quality of service are taken for those of rclpy's defaults, whatever is given.
+    The profiles are the qualities of service of its channels.
     """
 
     def __init__(
@@ -205,11 +215,11 @@ class ActionServer:
         goal_callback: Callable[[Any], Any] = default_goal_callback,
         handle_accepted_callback: Callable[[ServerGoalHandle], Any] = default_handle_accepted_callback,
         cancel_callback: Callable[[Any], Any] = default_cancel_callback,
-        goal_service_qos_profile: Any = None,
-        result_service_qos_profile: Any = None,
-        cancel_service_qos_profile: Any = None,
-        feedback_pub_qos_profile: Any = None,
-        status_pub_qos_profile: Any = None,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_pub_qos_profile: QoSProfile = FEEDBACK,
+        status_pub_qos_profile: QoSProfile = qos_profile_action_status_default,
         result_timeout: float = 10,
     ) -> None:
         check_is_valid_action_type(action_type)
@@ -220,15 +230,22 @@ class ActionServer:
         self.register_handle_accepted_callback(handle_accepted_callback)
         self.register_cancel_callback(cancel_callback)
         full = node.resolve_service_name(action_name)
+        qos = action_qos(
+            goal_service_qos_profile,
+            cancel_service_qos_profile,
+            result_service_qos_profile,
+            feedback_pub_qos_profile,
+            status_pub_qos_profile,
+        )
         self._endpoint = _Endpoint(
-            node._network, full, action_type, None, lambda goal: None, None, None, result_timeout
+            node._node_network, full, action_type, None, lambda goal: None, None, None, result_timeout, qos
         )
         self._endpoint.owner = self
         group = callback_group or node.default_callback_group
         self._requests = []
         for service in self._endpoint._services:
             requests = Requests(service, group, None)  # type: ignore[arg-type]
-            self._requests.append(node._adopt(Entity, requests))
+            self._requests.append(node._node_adopt(Entity, requests))
 
     @property
     def action_type(self) -> Any:
@@ -263,11 +280,13 @@ class ActionServer:
             self._endpoint._apply(goal, event)
         except InvalidTransition as error:
             raise RCLError(f"Failed to update goal state: {error}") from None
+        except NodeClosed:
+            return
 
     def notify_execute(
         self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
     ) -> None:
-        """Have the executor of the node do the work of a goal."""
+        """Have the executor of the node do the work of a goal; where the node has none, nobody does it, as in rclpy."""
         executor = self._node.executor
         if executor is not None:
             executor.create_task(self._execute, execute_callback or self._execute_callback, goal_handle)
@@ -279,6 +298,8 @@ class ActionServer:
         except Exception as error:
             self._log().error(f"Error raised in execute callback: {error}")
             traceback.print_exc()
+        if self._endpoint._closed:
+            return
         if handle.is_active:
             number = handle.goal_id.uuid
             self._log().warning(f"Goal state not set, assuming aborted. Goal ID: {number}")
@@ -293,7 +314,7 @@ class ActionServer:
     def destroy(self) -> None:
         """Withdraw the action. Twice is allowed."""
         for requests in self._requests:
-            self._node._disown(Entity, requests)
+            self._node._node_disown(Entity, requests)
         self._requests = []
         self._endpoint.close()
 

@@ -38,7 +38,7 @@ class LifecycleState(NamedTuple):
 class LifecycleNodeMixin(ManagedEntity):
     """What makes a Node a managed one: derive from this and from Node."""
 
-    _machine: _machine.Machine
+    _node_machine: _machine.Machine
 
     def __init__(
         self, *, enable_communication_interface: bool = True, callback_group: CallbackGroup | None = None
@@ -46,20 +46,20 @@ class LifecycleNodeMixin(ManagedEntity):
         node: Any = self
         if not isinstance(self, Node):
             raise RuntimeError("LifecycleNodeMixin is for classes that derive from Node too")
-        self._machine = _machine.Machine()
-        self._managed: list[ManagedEntity] = []
-        self._transition_event: Any = None
+        self._node_machine = _machine.Machine()
+        self._node_managed: list[ManagedEntity] = []
+        self._node_transition_event: Any = None
         if not enable_communication_interface:
             return
-        self._transition_event = node.create_publisher(
+        self._node_transition_event = node.create_publisher(
             message_class("lifecycle_msgs/msg/TransitionEvent"), "~/transition_event", 1
         )
         for name, kind, callback in (
-            ("change_state", "ChangeState", self._on_change_state),
-            ("get_state", "GetState", self._on_get_state),
-            ("get_available_states", "GetAvailableStates", self._on_get_states),
-            ("get_available_transitions", "GetAvailableTransitions", self._on_get_transitions),
-            ("get_transition_graph", "GetAvailableTransitions", self._on_get_graph),
+            ("change_state", "ChangeState", self._node_on_change_state),
+            ("get_state", "GetState", self._node_on_get_state),
+            ("get_available_states", "GetAvailableStates", self._node_on_get_states),
+            ("get_available_transitions", "GetAvailableTransitions", self._node_on_get_transitions),
+            ("get_transition_graph", "GetAvailableTransitions", self._node_on_get_graph),
         ):
             service = message_class(f"lifecycle_msgs/srv/{kind}")
             node.create_service(service, f"~/{name}", callback, callback_group=callback_group)
@@ -68,84 +68,84 @@ class LifecycleNodeMixin(ManagedEntity):
 
     def trigger_configure(self) -> TransitionCallbackReturn:
         """Configure the node; how that ended. Likewise the following."""
-        return self._change("configure")
+        return self._node_change("configure")
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
-        return self._change("cleanup")
+        return self._node_change("cleanup")
 
     def trigger_activate(self) -> TransitionCallbackReturn:
-        return self._change("activate")
+        return self._node_change("activate")
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
-        return self._change("deactivate")
+        return self._node_change("deactivate")
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
-        if self._machine.state == _machine.FINALIZED:
+        if self._node_machine.state == _machine.FINALIZED:
             return TransitionCallbackReturn.SUCCESS
-        return self._change("shutdown")
+        return self._node_change("shutdown")
 
-    def _change(self, which: int | str) -> TransitionCallbackReturn:
-        before = LifecycleState(STATES[self._machine.state], self._machine.state)
-        begins = self._machine.find(which)
+    def _node_change(self, which: int | str) -> TransitionCallbackReturn:
+        node: Any = self
+        before = LifecycleState(STATES[self._node_machine.state], self._node_machine.state)
+        begins = self._node_machine.find(which)
         if begins is None or begins.goal not in _CALLBACKS:
-            self._logger().error(f"Unable to start transition {which} from current state {before.label}")
+            node.get_logger().error(f"Unable to start transition {which} from current state {before.label}")
             return TransitionCallbackReturn.ERROR
-        self._go(begins)
-        ended = self._call_for(before)
-        self._conclude(ended)
-        if ended is TransitionCallbackReturn.ERROR and self._machine.state == _machine.ERRORPROCESSING:
-            self._conclude(self._call_for(before))
+        self._node_go(begins)
+        ended = self._node_call_for(before)
+        self._node_conclude(ended)
+        if ended is TransitionCallbackReturn.ERROR and self._node_machine.state == _machine.ERRORPROCESSING:
+            self._node_conclude(self._node_call_for(before))
         return ended
 
-    def _call_for(self, before: LifecycleState) -> TransitionCallbackReturn:
-        callback: Callable[[LifecycleState], Any] = getattr(self, _CALLBACKS[self._machine.state])
+    def _node_call_for(self, before: LifecycleState) -> TransitionCallbackReturn:
+        node: Any = self
+        callback: Callable[[LifecycleState], Any] = getattr(self, _CALLBACKS[self._node_machine.state])
         try:
             found: TransitionCallbackReturn = TransitionCallbackReturn(callback(before))
         except Exception as error:
-            self._logger().error(f"{_CALLBACKS[self._machine.state]} raised {type(error).__name__}: {error}")
+            node.get_logger().error(
+                f"{_CALLBACKS[self._node_machine.state]} raised {type(error).__name__}: {error}"
+            )
             return TransitionCallbackReturn.ERROR
         return found
 
-    def _conclude(self, ended: TransitionCallbackReturn) -> None:
-        found = self._machine.find(ended.to_label())
+    def _node_conclude(self, ended: TransitionCallbackReturn) -> None:
+        found = self._node_machine.find(ended.to_label())
         assert found is not None
-        self._go(found)
+        self._node_go(found)
 
-    def _go(self, transition: Transition) -> None:
-        self._machine.state = transition.goal
-        if self._transition_event is None:
+    def _node_go(self, transition: Transition) -> None:
+        self._node_machine.state = transition.goal
+        if self._node_transition_event is None:
             return
         node: Any = self
-        event = self._transition_event.msg_type(timestamp=node.get_clock().now().nanoseconds)
+        event = self._node_transition_event.msg_type(timestamp=node.get_clock().now().nanoseconds)
         described = _described(transition)
         event.transition, event.start_state = described.transition, described.start_state
         event.goal_state = described.goal_state
-        self._transition_event.publish(event)
-
-    def _logger(self) -> Any:
-        node: Any = self
-        return node.get_logger()
+        self._node_transition_event.publish(event)
 
     # -- what others ask
 
-    def _on_change_state(self, request: Any, response: Any) -> Any:
+    def _node_on_change_state(self, request: Any, response: Any) -> Any:
         which = request.transition.label or request.transition.id
-        response.success = self._change(which) is TransitionCallbackReturn.SUCCESS
+        response.success = self._node_change(which) is TransitionCallbackReturn.SUCCESS
         return response
 
-    def _on_get_state(self, request: Any, response: Any) -> Any:
-        response.current_state = _state(self._machine.state)
+    def _node_on_get_state(self, request: Any, response: Any) -> Any:
+        response.current_state = _state(self._node_machine.state)
         return response
 
-    def _on_get_states(self, request: Any, response: Any) -> Any:
+    def _node_on_get_states(self, request: Any, response: Any) -> Any:
         response.available_states = [_state(number) for number in STATES]
         return response
 
-    def _on_get_transitions(self, request: Any, response: Any) -> Any:
-        response.available_transitions = _all_described(self._machine.available())
+    def _node_on_get_transitions(self, request: Any, response: Any) -> Any:
+        response.available_transitions = _all_described(self._node_machine.available())
         return response
 
-    def _on_get_graph(self, request: Any, response: Any) -> Any:
+    def _node_on_get_graph(self, request: Any, response: Any) -> Any:
         response.available_transitions = _all_described(TRANSITIONS)
         return response
 
@@ -155,10 +155,10 @@ class LifecycleNodeMixin(ManagedEntity):
         """Tell it of every transition. Raises TypeError for what is no ManagedEntity."""
         if not isinstance(entity, ManagedEntity):
             raise TypeError("Expected a rclpy.lifecycle.ManagedEntity instance.")
-        self._managed.append(entity)
+        self._node_managed.append(entity)
 
-    def _tell(self, name: str, state: Any) -> TransitionCallbackReturn:
-        for entity in list(self._managed):
+    def _node_tell(self, name: str, state: Any) -> TransitionCallbackReturn:
+        for entity in list(self._node_managed):
             ended = getattr(entity, name)(state)
             if not isinstance(ended, TransitionCallbackReturn):
                 raise TypeError(f"{name}() of {entity!r} should return a TransitionCallbackReturn")
@@ -167,22 +167,22 @@ class LifecycleNodeMixin(ManagedEntity):
         return TransitionCallbackReturn.SUCCESS
 
     def on_configure(self, state: Any) -> TransitionCallbackReturn:
-        return self._tell("on_configure", state)
+        return self._node_tell("on_configure", state)
 
     def on_cleanup(self, state: Any) -> TransitionCallbackReturn:
-        return self._tell("on_cleanup", state)
+        return self._node_tell("on_cleanup", state)
 
     def on_shutdown(self, state: Any) -> TransitionCallbackReturn:
-        return self._tell("on_shutdown", state)
+        return self._node_tell("on_shutdown", state)
 
     def on_activate(self, state: Any) -> TransitionCallbackReturn:
-        return self._tell("on_activate", state)
+        return self._node_tell("on_activate", state)
 
     def on_deactivate(self, state: Any) -> TransitionCallbackReturn:
-        return self._tell("on_deactivate", state)
+        return self._node_tell("on_deactivate", state)
 
     def on_error(self, state: Any) -> TransitionCallbackReturn:
-        return self._tell("on_error", state)
+        return self._node_tell("on_error", state)
 
     # -- publishers
 
@@ -190,13 +190,13 @@ class LifecycleNodeMixin(ManagedEntity):
         """A publisher that publishes while the node is active; takes what `create_publisher` takes."""
         node: Any = self
         made: LifecyclePublisher = node.create_publisher(*args, **kwargs, publisher_class=LifecyclePublisher)
-        self._managed.append(made)
+        self._node_managed.append(made)
         return made
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> bool:
         """Withdraw such a publisher; False where it is none of this node."""
-        if publisher in self._managed:
-            self._managed.remove(publisher)
+        if publisher in self._node_managed:
+            self._node_managed.remove(publisher)
         node: Any = self
         destroyed: bool = node.destroy_publisher(publisher)
         return destroyed
