@@ -40,4 +40,9 @@ rospy.sleep(0.3)
 client.cancel_goal()
 print(client.wait_for_result(rospy.Duration(10)), client.get_state() == actionlib.GoalStatus.PREEMPTED)
 print(client.get_result().result < 10000, client.get_goal_status_text())
+status = (
+    counter.server.action_server.status_timer
+)  # otherwise it now and then publishes on a topic that is closed
+status.shutdown()
+status.join()
 rospy.signal_shutdown("its threads end with the node")
