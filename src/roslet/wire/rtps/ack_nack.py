@@ -7,9 +7,9 @@ A reader has all samples before the set's base and asks for those in the set.
 """
 
 from roslet.record import Record
+from roslet.wire.fields import OCTETS, Field, Fixed
 from roslet.wire.primitives import packer, unpacker
 from roslet.wire.rtps import number_set
-from roslet.wire.rtps.fields import OCTETS, Field, Fixed
 from roslet.wire.rtps.number_set import NumberSet
 from roslet.wire.rtps.submessage import ACKNACK, FLAG_E, truncated
 

@@ -9,9 +9,9 @@ octetsToInlineQos counts from behind itself; what it skips beyond 16 is from the
 import struct
 
 from roslet.record import Record
+from roslet.wire.fields import INT, OCTETS, Field, Fixed
 from roslet.wire.primitives import bytes_packer
 from roslet.wire.rtps import parameter_list
-from roslet.wire.rtps.fields import INT, OCTETS, Field, Fixed
 from roslet.wire.rtps.submessage import DATA, FLAG_E, INFO_TS, invalid, truncated
 
 FLAG_Q = 0x02  # inline QoS is there

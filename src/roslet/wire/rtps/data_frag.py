@@ -7,8 +7,8 @@ fragmentSize  sampleSize  [inline QoS] [fragments]
 """
 
 from roslet.record import Record
+from roslet.wire.fields import INT, OCTETS, Field, Fixed
 from roslet.wire.rtps import parameter_list
-from roslet.wire.rtps.fields import INT, OCTETS, Field, Fixed
 from roslet.wire.rtps.submessage import DATA_FRAG, FLAG_E, invalid, truncated
 
 FLAG_Q = 0x02

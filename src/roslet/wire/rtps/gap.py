@@ -7,8 +7,8 @@ The numbers gapStart .. gapList.base - 1, and those in gapList, will never come.
 """
 
 from roslet.record import Record
+from roslet.wire.fields import INT, OCTETS, Field, Fixed
 from roslet.wire.rtps import number_set
-from roslet.wire.rtps.fields import INT, OCTETS, Field, Fixed
 from roslet.wire.rtps.number_set import NumberSet
 from roslet.wire.rtps.submessage import FLAG_E, GAP, invalid, truncated
 

@@ -6,7 +6,7 @@ RTPS   version  vendorId  guidPrefix
 
 from roslet.errors import ProtocolError
 from roslet.record import Record
-from roslet.wire.rtps.fields import OCTETS, Field, Fixed
+from roslet.wire.fields import OCTETS, Field, Fixed
 from roslet.wire.rtps.guid import PROTOCOLVERSION, PROTOCOLVERSION_MAJOR, VENDORID_ROSLET
 
 FIELDS = (

@@ -7,7 +7,7 @@ A writer tells which samples it has: firstSN to lastSN, or none where lastSN is 
 """
 
 from roslet.record import Record
-from roslet.wire.rtps.fields import INT, OCTETS, Field, Fixed
+from roslet.wire.fields import INT, OCTETS, Field, Fixed
 from roslet.wire.rtps.submessage import FLAG_E, HEARTBEAT, invalid, truncated
 
 FLAG_F = 0x02  # final: no answer is needed

@@ -5,7 +5,7 @@ readerId  writerId  writerSN  lastFragmentNum  count
 """
 
 from roslet.record import Record
-from roslet.wire.rtps.fields import INT, OCTETS, Field, Fixed
+from roslet.wire.fields import INT, OCTETS, Field, Fixed
 from roslet.wire.rtps.submessage import FLAG_E, HEARTBEAT_FRAG, invalid, truncated
 
 FIELDS = (

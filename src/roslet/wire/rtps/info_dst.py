@@ -7,7 +7,7 @@ What follows is for this participant only; the prefix of zeros means for whoever
 """
 
 from roslet.record import Record
-from roslet.wire.rtps.fields import OCTETS, Field, Fixed
+from roslet.wire.fields import OCTETS, Field, Fixed
 from roslet.wire.rtps.submessage import FLAG_E, INFO_DST, truncated
 
 FIELDS = (Field("guidPrefix", 0, 96, OCTETS),)

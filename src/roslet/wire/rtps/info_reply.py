@@ -8,9 +8,9 @@ Replies to what follows go there instead of to the locators from discovery.
 """
 
 from roslet.record import Record
+from roslet.wire.fields import SUBMESSAGE_HEADER, Fixed
 from roslet.wire.primitives import packer, unpacker
 from roslet.wire.rtps import locator
-from roslet.wire.rtps.fields import SUBMESSAGE_HEADER, Fixed
 from roslet.wire.rtps.locator import Locator
 from roslet.wire.rtps.submessage import FLAG_E, INFO_REPLY, INFO_REPLY_IP4, truncated
 

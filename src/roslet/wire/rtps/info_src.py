@@ -8,7 +8,7 @@ What follows comes from this participant, not from the one that the message head
 
 from roslet.errors import ProtocolError
 from roslet.record import Record
-from roslet.wire.rtps.fields import OCTETS, Field, Fixed
+from roslet.wire.fields import OCTETS, Field, Fixed
 from roslet.wire.rtps.guid import PROTOCOLVERSION_MAJOR
 from roslet.wire.rtps.submessage import FLAG_E, INFO_SRC, truncated
 

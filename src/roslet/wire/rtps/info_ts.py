@@ -5,8 +5,8 @@ seconds  fraction       with FLAG_I there is no time, and the submessage is empt
 """
 
 from roslet.record import Record
+from roslet.wire.fields import SUBMESSAGE_HEADER, Field, Fixed
 from roslet.wire.rtps import times
-from roslet.wire.rtps.fields import SUBMESSAGE_HEADER, Field, Fixed
 from roslet.wire.rtps.submessage import FLAG_E, INFO_TS, truncated
 
 FLAG_I = 0x02  # invalidate

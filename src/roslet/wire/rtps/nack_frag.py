@@ -7,9 +7,9 @@ A reader asks for the fragments in the set; unlike ACKNACK's, the base acknowled
 """
 
 from roslet.record import Record
+from roslet.wire.fields import INT, OCTETS, Field, Fixed
 from roslet.wire.primitives import packer, unpacker
 from roslet.wire.rtps import number_set
-from roslet.wire.rtps.fields import INT, OCTETS, Field, Fixed
 from roslet.wire.rtps.number_set import NumberSet
 from roslet.wire.rtps.submessage import FLAG_E, NACK_FRAG, invalid, truncated
 

@@ -1,7 +1,7 @@
 """PAD. RTPS 2.3, 8.3.7.12, 9.4.5.12: any length, no meaning."""
 
 from roslet.record import Record
-from roslet.wire.rtps.fields import SUBMESSAGE_HEADER, Fixed
+from roslet.wire.fields import SUBMESSAGE_HEADER, Fixed
 from roslet.wire.rtps.submessage import FLAG_E, PAD
 
 FIELDS = ()

@@ -2,7 +2,7 @@
 
 from roslet.errors import ProtocolError
 from roslet.record import Names
-from roslet.wire.rtps.fields import LENGTH
+from roslet.wire.fields import LENGTH
 from roslet.wire.rtps.header import SIZE as HEADER_SIZE
 
 TYPE_CHECKING = False

@@ -1,7 +1,7 @@
-"""Fixed headers, described once: name, byte offset, width, kind. RTPS 2.3, 9.4.
+"""Fixed headers, described once: name, byte offset, width, kind.
 
-The same table gives this codec its `struct` formats and, later, the gateware its layouts. Offsets count from the end of the
-submessage header (for the message header: from its start).
+The same table gives this codec its `struct` formats and the gateware its header readers and writers. Offsets count from the
+start of a header; in RTPS submessages (2.3, 9.4) from the end of the submessage header.
 """
 
 from roslet.record import Record
