@@ -1,0 +1,34 @@
+"""The checksum of the Internet protocols. RFC 1071."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Module, Mux, Signal, Value
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+
+def add(left: Value, right: Value) -> Value:
+    """The ones' complement sum of two numbers of 16 bits: the carry comes in again at the bottom."""
+    total = left + right
+    return (total[:16] + total[16])[:16]
+
+
+class OctetSum(wiring.Component):
+    """Sums octets as 16-bit words in the order of the wire; an odd last one is the upper half of its word.
+
+    Ports: `clear` begins anew (it wins over `add`); with `add` the octet `data` is taken, in that cycle. `sum`, 16 bits, has
+    what was taken until the cycle before; it is not complemented: 0xFFFF over data with a right checksum in it.
+    """
+
+    def __init__(self) -> None:
+        super().__init__({"clear": In(1), "add": In(1), "data": In(8), "sum": Out(16)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        odd = Signal()
+        with m.If(self.clear):
+            m.d.sync += [self.sum.eq(0), odd.eq(0)]
+        with m.Elif(self.add):
+            word = Mux(odd, self.data, self.data << 8)
+            m.d.sync += [self.sum.eq(add(self.sum, word)), odd.eq(~odd)]
+        return m

@@ -1,0 +1,70 @@
+"""What is known of a frame as it passes between layers: the `meta` of the streams, and the node's own addresses.
+
+Addresses are in the order of the wire, the first octet in the lowest bits; lengths count octets; ports and types are numbers.
+"""
+
+from __future__ import annotations
+
+from amaranth.lib import data, wiring
+from amaranth.lib.wiring import In, Out
+
+ADDRESSES = data.StructLayout({"mac": 48, "ip": 32, "gateway": 32, "mask": 32})
+"""The node's own, steady while it is enabled."""
+
+ETHERNET_RX = data.StructLayout({"source": 48, "group": 1})
+"""Behind an Ethernet header: who sent it, and whether it came by a multicast or broadcast address."""
+
+ETHERNET_TX = data.StructLayout({"destination": 48, "type": 16})
+"""Before an Ethernet header."""
+
+IPV4_RX = data.StructLayout(
+    {"mac": 48, "source": 32, "destination": 32, "protocol": 8, "length": 16, "group": 1}
+)
+"""Behind an IPv4 header, or several of fragments: `mac` and `source` sent it; `length` of what follows; `group` as above."""
+
+IPV4_FRAGMENT = data.StructLayout(
+    {**{name: field.shape for name, field in IPV4_RX}, "identification": 16, "offset": 13, "more": 1}
+)
+"""Behind the header of a fragment: as IPV4_RX, `length` being its own; `offset` in units of 8 octets."""
+
+IPV4_TX = data.StructLayout({"mac": 48, "destination": 32, "protocol": 8, "length": 16})
+"""Before an IPv4 header: where it goes, by which hardware address; `length` of what follows."""
+
+UDP_RX = data.StructLayout(
+    {
+        "mac": 48,
+        "source": 32,
+        "destination": 32,
+        "source_port": 16,
+        "destination_port": 16,
+        "length": 16,
+        "group": 1,
+    }
+)
+"""Behind a UDP header: `length` of the data."""
+
+UDP_TX = data.StructLayout(
+    {"mac": 48, "destination": 32, "source_port": 16, "destination_port": 16, "length": 16, "sum": 16}
+)
+"""Before a UDP header: `length` of the data, and `sum`, the ones' complement sum of its 16-bit words."""
+
+
+class LookupSignature(wiring.Signature):
+    """A question for a hardware address, seen from who asks.
+
+    The asker holds `valid` and a steady `ip`. Within a bounded number of cycles `done` is high for one cycle, in which the
+    answer stands beside it: `found` with `mac`; or `failed`, nobody answers there; or neither, it is being asked for: ask again.
+    After `done` the asker may put another question at once.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(
+            {
+                "valid": Out(1),
+                "ip": Out(32),
+                "done": In(1),
+                "found": In(1),
+                "failed": In(1),
+                "mac": In(48),
+            }
+        )

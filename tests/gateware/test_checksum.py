@@ -1,0 +1,46 @@
+"""The example of RFC 1071, 3, and sums by hand."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from gateware.frames import Bench
+from roslet.gateware.checksum import OctetSum
+
+
+@pytest.mark.parametrize(
+    ("octets", "total"),
+    [
+        (bytes.fromhex("0001 f203 f4f5 f6f7"), 0xDDF2),
+        (b"", 0),
+        (b"\x12", 0x1200),
+        (b"\xff\xff", 0xFFFF),
+        (b"\xff\xff\x00\x01", 0x0001),
+        (b"\xff\xff\xff\xff", 0xFFFF),
+        (bytes.fromhex("4500 0073 0000 4000 4011 b861 c0a8 0001 c0a8 00c7"), 0xFFFF),
+    ],
+)
+def test_a_sum_is_that_of_the_words(octets: bytes, total: int) -> None:
+    bench = Bench(OctetSum())
+    sums = []
+
+    async def process(ctx: Any) -> None:
+        for _ in range(2):  # the second time after `clear`
+            for octet in octets:
+                ctx.set(bench.dut.data, octet)
+                ctx.set(bench.dut.add, 1)
+                await ctx.tick()
+                ctx.set(bench.dut.add, 0)
+                await ctx.tick()
+            sums.append(ctx.get(bench.dut.sum))
+            ctx.set(bench.dut.clear, 1)
+            ctx.set(bench.dut.add, 1)
+            await ctx.tick()
+            ctx.set(bench.dut.clear, 0)
+            ctx.set(bench.dut.add, 0)
+
+    bench.drive(process)
+    bench.run()
+    assert sums == [total, total]
