@@ -1,6 +1,7 @@
 """What is known of a frame as it passes between layers: the `meta` of the streams, and the node's own addresses.
 
-Addresses are in the order of the wire, the first octet in the lowest bits; lengths count octets; ports and types are numbers.
+Addresses are in the order of the wire, the first octet in the lowest bits; lengths count octets; ports and types are
+numbers.
 """
 
 from __future__ import annotations
@@ -53,8 +54,8 @@ class LookupSignature(wiring.Signature):
     """A question for a hardware address, seen from who asks.
 
     The asker holds `valid` and a steady `ip`. Within a bounded number of cycles `done` is high for one cycle, in which the
-    answer stands beside it: `found` with `mac`; or `failed`, nobody answers there; or neither, it is being asked for: ask again.
-    After `done` the asker may put another question at once.
+    answer stands beside it: `found` with `mac`; or `failed`, nobody answers there; or neither, it is being asked for: ask
+    again. After `done` the asker may put another question at once.
     """
 
     def __init__(self) -> None:
