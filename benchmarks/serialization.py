@@ -1,11 +1,12 @@
-"""Microseconds to write and to read a message: roslet, genpy, rosbags and rclpy side by side, on one machine.
+"""Microseconds to write and to read a message: roslet, genpy, rosbags, rclpy and rosless side by side, on one machine.
 
     python benchmarks/serialization.py [--budget SECONDS] [--rounds N] [--json] [--only TEXT]
 
-genpy is run by Debian's Python, rclpy by that of the ROS 2 wheels (`make peers`); what is absent is left out. Of each
-library the quickest documented way is taken: roslet writes into a buffer that is reused (`into`) or to new bytes
-(`write`), and reads from bytes (`read`); genpy writes into a BytesIO that is reused. A figure is the median of five
-batches, and the best of the rounds; the collector runs as it does in a program.
+genpy is run by Debian's Python, rclpy by that of the ROS 2 wheels (`make peers`), rosless by $PEERS_PIP_PYTHON; what is
+absent is left out. Of each library the quickest documented way is taken: roslet writes into a buffer that is reused
+(`into`) or to new bytes (`write`), and reads from bytes (`read`); genpy writes into a BytesIO that is reused. `use` is to
+read, and then to look at every field once: some libraries do the work of reading only then. A figure is the median of
+five batches, and the best of the rounds; the collector runs as it does in a program.
 """
 
 from __future__ import annotations
@@ -158,6 +159,26 @@ def renamed(value: Any) -> Any:
 Case = tuple[str, dict[str, "Callable[[], object]"]]
 
 
+def reading(values: dict[str, Any], read: Callable[[], Any]) -> dict[str, Callable[[], object]]:
+    """`read`, and `use`: what it returns is looked at, field by field, all that `values` name."""
+    lines = ["def use():", "    m = read()"]
+
+    def look(at: str, part: dict[str, Any], depth: int) -> None:
+        for name, value in part.items():
+            if isinstance(value, dict):
+                look(f"{at}.{name}", value, depth)
+            elif isinstance(value, list) and isinstance(value[0], dict):
+                lines.append("    " * depth + f"for m{depth} in {at}.{name}:")
+                look(f"m{depth}", value[0], depth + 1)
+            else:
+                lines.append("    " * depth + f"{at}.{name}")
+
+    look("m", values, 1)
+    made: dict[str, Any] = {"read": read}
+    exec("\n".join(lines), made)
+    return {"read": read, "use": made["use"]}
+
+
 def roslet_cases(dialect: Any) -> Iterator[Case]:
     sys.path.insert(0, str(HERE.parents[1] / "src"))
     import numpy
@@ -185,7 +206,8 @@ def roslet_cases(dialect: Any) -> Iterator[Case]:
     buffer = memoryview(bytearray(2_000_000))
     for name, (type_name, values) in cases().items():
         kind = message_class(dialect, type_name)
-        message = build(kind, renamed(values) if dialect == "ros1" else values)
+        named = renamed(values) if dialect == "ros1" else values
+        message = build(kind, named)
         data = message.serialize()
         if kind.deserialize(data) != message:
             raise AssertionError(name)
@@ -194,7 +216,7 @@ def roslet_cases(dialect: Any) -> Iterator[Case]:
             {
                 "into": partial(message.serialize_into, buffer),
                 "write": message.serialize,
-                "read": partial(kind.deserialize, data),
+                **reading(named, partial(kind.deserialize, data)),
             },
         )
 
@@ -224,7 +246,7 @@ def genpy_cases() -> Iterator[Case]:
             message.serialize(stream)
             return stream.getvalue()  # type: ignore[no-any-return]
 
-        yield name, {"write": write, "read": partial(read_new, kind, data)}
+        yield name, {"write": write, **reading(values, partial(read_new, kind, data))}
 
 
 def listed(value: Any) -> Any:
@@ -267,7 +289,7 @@ def rclpy_cases() -> Iterator[Case]:
             name,
             {
                 "write": partial(serialize_message, message),
-                "read": partial(deserialize_message, data, kind),
+                **reading(values, partial(deserialize_message, data, kind)),
             },
         )
 
@@ -305,9 +327,26 @@ def rosbags_cases(dialect: str) -> Iterator[Case]:
                 name,
                 {
                     "write": partial(write, message, full),
-                    "read": partial(read, data, full),
+                    **reading(values, partial(read, data, full)),
                 },
             )
+
+
+def rosless_cases() -> Iterator[Case]:
+    import rosless  # type: ignore[import-not-found]
+
+    rosless.register_type(COORDINATE.replace("/", "/msg/"), COORDINATE_TEXT["ros2"])
+    for name, (type_name, values) in cases().items():
+        full = type_name.replace("/", "/msg/")
+        message = rosless.Message(full, **listed(values))
+        data = rosless.encode(full, message)
+        yield (
+            name,
+            {
+                "write": partial(rosless.encode, full, message),
+                **reading(values, partial(rosless.decode, full, data)),
+            },
+        )
 
 
 LIBRARIES: dict[str, tuple[str, Callable[[], Iterator[Case]]]] = {
@@ -317,6 +356,7 @@ LIBRARIES: dict[str, tuple[str, Callable[[], Iterator[Case]]]] = {
     "roslet/cdr": (sys.executable, lambda: roslet_cases("ros2")),
     "rclpy": (str(CACHE / "kilted/bin/python"), rclpy_cases),
     "rosbags/cdr": (sys.executable, lambda: rosbags_cases("ros2")),
+    "rosless": (os.environ.get("PEERS_PIP_PYTHON", sys.executable), rosless_cases),
 }
 
 
@@ -366,7 +406,10 @@ def main() -> None:
     if options.json:
         print(json.dumps(found, indent=1))
         return
-    for family in (("roslet/ros1", "genpy", "rosbags/ros1"), ("roslet/cdr", "rclpy", "rosbags/cdr")):
+    for family in (
+        ("roslet/ros1", "genpy", "rosbags/ros1"),
+        ("roslet/cdr", "rclpy", "rosbags/cdr", "rosless"),
+    ):
         print_table([library for library in family if library in found], found)
 
 
@@ -376,7 +419,7 @@ def print_table(libraries: list[str], found: dict[str, dict[str, dict[str, float
     columns = [
         (library, what)
         for library in libraries
-        for what in ("into", "write", "read")
+        for what in ("into", "write", "read", "use")
         if what in found[library]["Imu"]
     ]
     print(f"{'us':18s}" + "".join(f"{library + ' ' + what:>19s}" for library, what in columns))
