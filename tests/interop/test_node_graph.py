@@ -149,8 +149,9 @@ def test_cyclone_and_we_list_each_others_nodes(tmp_path: pathlib.Path, gid_size:
             lambda: [one["node"] for one in ours.ask("endpoints", "/told")] == ["/far/theirs"],
             "the publisher has its node",
         )
-        theirs.wait(["/deep/ours"], "nodes")
+        theirs.wait(["/deep/ours", "/far/theirs"], "nodes")
         theirs.ask("tell_node", "", "", [])
-        ours.wait(["/deep/ours"], "nodes")
+        for peer in (ours, theirs):
+            peer.wait(["/deep/ours"], "nodes")
         ours.ask("close_node")
         theirs.wait([], "nodes", patience=GONE)

@@ -580,7 +580,9 @@ def call(key, first, count, size, timeout):
 
 def graph(gid_size):
     """Take part in ros_discovery_info, with gids of that many octets."""
-    qos = Qos(Policy.Userdata(HASH.encode() if gid_size == 16 else b""), base=profile(KEPT))
+    # Without keys all participants are one instance: of depth 1 the last one told would be all that is heard.
+    deep = profile({**KEPT, "depth": 100})
+    qos = Qos(Policy.Userdata(HASH.encode() if gid_size == 16 else b""), base=deep)
     told = Topic(participant, "ros_discovery_info", GRAPHS[gid_size][2])
     endpoints["graph"] = Endpoint(DataWriter(participant, told, qos=qos), gid_size)
     reader = Endpoint(DataReader(participant, told, qos=qos), gid_size)
@@ -607,10 +609,18 @@ def tell_node(namespace, name, keys):
 
 
 def participants():
-    """How many participants Cyclone knows of, its own included."""
-    return sum(
-        1 for one in known.read(1000) if one.sample_info.valid_data and one.sample_info.instance_state == 16
-    )
+    """The guids of participants that Cyclone knows of, its own included."""
+    return {
+        one.key.bytes
+        for one in known.read(1000)
+        if one.sample_info.valid_data and one.sample_info.instance_state == 16
+    }
+
+
+def listed():
+    """The nodes of participants that are there: as an rmw does, those of one that has left are forgotten."""
+    there = participants()
+    return sorted(one[0] for gid, found in nodes.items() if gid[:16] in there for one in found)
 
 
 def begin():
@@ -644,7 +654,7 @@ COMMANDS = {
     "close": close,
     "graph": graph,
     "tell_node": tell_node,
-    "nodes": lambda: [one[0] for found in nodes.values() for one in found],
+    "nodes": listed,
     "keyed": keyed,
     "hear_keyed": hear_keyed,
     "heard_keyed": lambda key: inboxes[key],
@@ -655,7 +665,7 @@ COMMANDS = {
     "client": client,
     "ready": ready,
     "call": call,
-    "participants": participants,
+    "participants": lambda: len(participants()),
     "process": process,
     "mortal": lambda name: fork(lambda: mortal(name)),
     "kill": kill,
