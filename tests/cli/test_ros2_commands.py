@@ -7,6 +7,7 @@ import os
 import pathlib
 import signal
 import subprocess
+import threading
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -315,6 +316,23 @@ def test_ctrl_c_cancels_a_goal_and_shows_what_it_came_to(start: Start, robot: ro
     out, err = process.communicate(timeout=10)
     assert (process.returncode, err) == (130, "")
     assert 'status: "CANCELED"\nresult:\n  sequence: [0, 1, 1' in out
+
+
+def test_ctrl_c_cancels_a_goal_that_is_accepted_only_afterwards(start: Start, robot: roslet.Node) -> None:
+    asked = threading.Event()
+
+    def accept(goal: Any) -> bool:
+        asked.set()
+        time.sleep(0.5)
+        return True
+
+    robot.action_server("slow", "example_interfaces/action/Fibonacci", count, on_goal=accept)
+    process = start("action", "send_goal", "/slow", "1000")
+    assert asked.wait(10)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=10)
+    assert (process.returncode, err) == (130, "")
+    assert 'status: "CANCELED"\nresult:\n' in out
 
 
 def test_a_goal_that_takes_too_long_is_canceled(run: Run, robot: roslet.Node) -> None:

@@ -149,24 +149,26 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
         node = graph.node
         client = node.action_client(name, kind)
         goal = build(kind.Goal, arguments.values, node.now)
+        answer = client.send_goal_async(
+            goal, None if arguments.no_feedback else lambda message: _show(arguments, "feedback", message)
+        )
         try:
-            accepted = client.send_goal(
-                goal,
-                None if arguments.no_feedback else lambda message: _show(arguments, "feedback", message),
-                timeout=arguments.timeout,
-            )
+            if not node.spin_until(answer.done, arguments.timeout):
+                raise CommandError(f"{name}: no answer within {arguments.timeout:g} s", UNREACHABLE)
+            left = None if end is None else max(0.001, end - monotonic())
+            status, result = answer.result(0).result(left)
         except GoalRejected as error:
             raise CommandError(str(error)) from None
-        try:
-            left = None if end is None else max(0.001, end - monotonic())
-            status, result = accepted.result(left)
         except CallTimeout:
-            _cancel(arguments, accepted)
+            _cancel(arguments, answer.result(0))
             raise CommandError(
                 f"{name}: no result within {arguments.timeout:g} s; the goal is canceled", UNREACHABLE
             ) from None
         except KeyboardInterrupt:
-            _cancel(arguments, accepted)
+            if not node.spin_until(answer.done, CANCEL_TIMEOUT):
+                note("the server does not say whether it has accepted the goal")
+            elif answer.exception() is None:
+                _cancel(arguments, answer.result(0))
             raise
         _show(arguments, "result", result, status)
     return OK if status == "SUCCEEDED" else FAILED
