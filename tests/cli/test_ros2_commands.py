@@ -7,8 +7,8 @@ import os
 import pathlib
 import signal
 import subprocess
-import threading
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from typing import Any
