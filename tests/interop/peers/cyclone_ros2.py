@@ -536,6 +536,10 @@ def service(key, name, type_name):
     answered = SERVICES[type_name][1]
 
     def serve(asked):
+        # The request may come before Cyclone knows who hears the reply; its rmw waits for that likewise.
+        end = time.monotonic() + 5
+        while not writer.get_matched_subscriptions() and time.monotonic() < end:
+            time.sleep(0.001)
         fields = response(type_name, asked)
         writer.write(answered(client=asked.client, number=asked.number, **fields))
 
