@@ -7,11 +7,14 @@ import tempfile
 
 import pytest
 
+from beside import Beside
+
 # Helpers that assert, beside the test modules. Here, since a helper of one folder may be imported by the tests of another.
 pytest.register_assert_rewrite("compat", "docs", "engine", "interop", "oracle")
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    config.pluginmanager.register(Beside())
     config.addinivalue_line(
         "markers", "micropython: a module whose tests also run under MicroPython (tests/micropython)"
     )

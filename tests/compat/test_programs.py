@@ -29,6 +29,7 @@ SCENES: dict[str, tuple[tuple[str, ...], ...]] = {
     "messages": (("messages.py",),),
     "threads": (("threads.py",),),
     "any message": (("generic.py",),),
+    "a class of its own": (("own_class.py",),),
     "services": (("services.py",),),
     "subscriber listeners": (("listeners.py",),),
     "actions": (("actions.py",),),

@@ -35,16 +35,19 @@ NOT_JAZZY = {
 }
 
 
+@pytest.mark.beside
 @pytest.mark.parametrize("scene", SCENES)
 def test_roslet_says_what_is_expected(scene: str, tmp_path: pathlib.Path) -> None:
     assert under_roslet(scene, tmp_path) == file_of(scene).read_text(encoding="utf-8")
 
 
+@pytest.mark.beside
 @pytest.mark.parametrize("scene", SCENES)
 def test_kilted_says_what_is_expected(scene: str, tmp_path: pathlib.Path) -> None:
     assert under_rclpy("kilted", scene, tmp_path) == file_of(scene).read_text(encoding="utf-8")
 
 
+@pytest.mark.beside
 @pytest.mark.parametrize("scene", [scene for scene in SCENES if scene not in NOT_JAZZY])
 def test_jazzy_says_what_is_expected(scene: str, tmp_path: pathlib.Path) -> None:
     assert under_rclpy("jazzy", scene, tmp_path) == file_of(scene).read_text(encoding="utf-8")

@@ -10,6 +10,8 @@ from interop import rtps
 from interop.namespace import Namespace, connect, lay, route
 from interop.networks import LEASE, check_heard, listen, talk
 
+pytestmark = pytest.mark.beside
+
 PEERS = ["roslet", "kilted", "cyclone"]
 
 

@@ -13,6 +13,8 @@ import pytest
 from interop.namespace import Namespace, connect
 from interop.networks import check_heard, check_silence, listen, talk
 
+pytestmark = pytest.mark.beside
+
 FOUND = [
     ("LOCALHOST", "LOCALHOST"),
     ("LOCALHOST", "SUBNET"),

@@ -14,7 +14,7 @@ from interop.ros2_peers import Pair, wait_until
 class TestExchange(CycloneExchange):
     talker, listener = "cyclone", "roslet"
 
-    @pytest.mark.parametrize("policy", ["latency_budget", "ownership"])
+    @pytest.mark.parametrize("policy", ["latency_budget", "ownership", "representation"])
     def test_both_ends_are_told_of_a_policy_that_no_node_has(self, pair: Pair, policy: str) -> None:
         self.check_strange(pair, policy)
 

@@ -13,7 +13,7 @@ from interop.ros2_peers import Pair
 class TestExchange(CycloneExchange):
     talker, listener = "roslet", "cyclone"
 
-    @pytest.mark.parametrize("policy", ["presentation", "ownership", "destination_order"])
+    @pytest.mark.parametrize("policy", ["presentation", "ownership", "destination_order", "representation"])
     def test_both_ends_are_told_of_a_policy_that_no_node_has(self, pair: Pair, policy: str) -> None:
         self.check_strange(pair, policy)
 

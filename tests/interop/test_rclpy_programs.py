@@ -9,6 +9,8 @@ import pytest
 from compat.rclpy_scenes import SCENES, file_of, play, rclpy, roslet
 from compat.test_rclpy_programs import NOT_JAZZY
 
+pytestmark = pytest.mark.beside
+
 SHARED = [scene for scene, programs in SCENES.items() if len(programs) > 1]
 
 

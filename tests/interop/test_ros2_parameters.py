@@ -111,13 +111,16 @@ def ours(store: Parameters, operation: list[Any]) -> Any:
         return ERRORS[type(error)]
 
 
+@pytest.mark.parametrize("peer", ["kilted", "jazzy"])
 @pytest.mark.parametrize("undeclared", [False, True])
-def test_each_operation_gives_what_it_gives_in_rclpy(tmp_path: pathlib.Path, undeclared: bool) -> None:
+def test_each_operation_gives_what_it_gives_in_rclpy(
+    tmp_path: pathlib.Path, undeclared: bool, peer: str
+) -> None:
     given = {"overrides": OVERRIDES, "undeclared": undeclared, "operations": OPERATIONS}
     (tmp_path / "given").write_text(json.dumps(given))
     program = str(peers.ROOT / "tests/interop/peers/rclpy_parameters.py")
     with Namespace(tmp_path) as namespace:
-        command = f"exec {peers.require('kilted')} {program} < {tmp_path / 'given'}"
+        command = f"exec {peers.require(peer)} {program} < {tmp_path / 'given'}"
         theirs = json.loads("\n".join(namespace.start("sh", "-c", command, name="parameters").finish(60)))
     store = Parameters(OVERRIDES, undeclared)
     different = []

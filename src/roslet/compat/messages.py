@@ -121,12 +121,19 @@ def dress() -> None:
 
 
 def adapt(kind: Any) -> Any:
-    """Give a message or service class, and those it is made of, what genpy's have; returns it. Twice is allowed."""
+    """Give a message or service class, and those it is made of, what genpy's have; returns it. Twice is allowed.
+
+    A class of the program's own, made of a message class, has it from there.
+    """
     if kind in _adapted:
         return kind
     _adapted.add(kind)
     dress()
-    if issubclass(kind, Service):
+    if issubclass(kind, Message) and "_spec" not in kind.__dict__:
+        for base in kind.__bases__:
+            if issubclass(base, Message):
+                adapt(base)
+    elif issubclass(kind, Service):
         kind._request_class = adapt(kind.Request)
         kind._response_class = adapt(kind.Response)
     elif issubclass(kind, Message):

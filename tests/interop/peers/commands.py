@@ -32,6 +32,30 @@ def process():
     }
 
 
+def logged(entry):
+    """Of an rcl_interfaces/msg/Log all but its time, of which only the seconds."""
+    place = [entry.file.rpartition("/")[2], entry.function, entry.line > 0]
+    return [entry.name, entry.level, entry.msg, *place, entry.stamp.sec]
+
+
+def described(response):
+    """A GetTypeDescription response as plain data."""
+
+    def fields(one):
+        return [
+            [each.name, each.default_value]
+            + [
+                getattr(each.type, name)
+                for name in ("type_id", "capacity", "string_capacity", "nested_type_name")
+            ]
+            for each in one.fields
+        ]
+
+    found = response.type_description
+    every = [found.type_description, *found.referenced_type_descriptions]
+    return [response.successful, [[one.type_name, fields(one)] for one in every]]
+
+
 def fork(start):
     """A child that was forked before anything was begun, runs `start` and lives until it is killed; its pid."""
     pid = os.fork()

@@ -61,6 +61,9 @@ def main():
                 if getattr(sample, "data", None) is not None:
                     done += 1
                     say("asked", "yes" if sample.data else "no")
+                    # The request may come before Cyclone knows who hears the reply; its rmw waits for that likewise.
+                    while not writer.get_matched_subscriptions() and time.monotonic() < ends:
+                        time.sleep(0.001)
                     text = "yes" if sample.data else "no"
                     writer.write(Response(sample.client, sample.number, sample.data, text))
             time.sleep(0.005)

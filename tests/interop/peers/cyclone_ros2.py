@@ -45,6 +45,7 @@ POLICIES = {
     8: "liveliness",
     11: "reliability",
     12: "destination_order",
+    25: "representation",
 }
 # What rclpy cannot say and we never do, by what it concerns.
 STRANGE = {
@@ -52,6 +53,10 @@ STRANGE = {
     "latency_budget": Policy.LatencyBudget(duration(seconds=1)),
     "ownership": Policy.Ownership.Exclusive,
     "destination_order": Policy.DestinationOrder.BySourceTimestamp,
+    "representation": Policy.DataRepresentation(
+        use_cdrv0_representation=False, use_xcdrv2_representation=True
+    ),
+    "partition": Policy.Partition(["elsewhere"]),
 }
 TYPES = {}
 KEPT = {"durability": "transient_local", "depth": 1}
@@ -531,6 +536,10 @@ def service(key, name, type_name):
     answered = SERVICES[type_name][1]
 
     def serve(asked):
+        # The request may come before Cyclone knows who hears the reply; its rmw waits for that likewise.
+        end = time.monotonic() + 5
+        while not writer.get_matched_subscriptions() and time.monotonic() < end:
+            time.sleep(0.001)
         fields = response(type_name, asked)
         writer.write(answered(client=asked.client, number=asked.number, **fields))
 

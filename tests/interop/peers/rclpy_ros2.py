@@ -11,7 +11,7 @@ import threading
 import time
 
 import rclpy
-from commands import fork, kill, process, run
+from commands import described, fork, kill, logged, process, run
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
@@ -204,6 +204,54 @@ def services_of(full_name):
     return dict(node.get_service_names_and_types_by_node(name, namespace or "/"))
 
 
+def log(texts):
+    """One line of each level; rclpy wants a place in the program for each."""
+    logger = node.get_logger()
+    logger.debug(texts[0])
+    logger.info(texts[1])
+    logger.warning(texts[2])
+    logger.error(texts[3])
+    logger.fatal(texts[4])
+
+
+def hear_log():
+    from rcl_interfaces.msg import Log
+
+    heard = inboxes["/rosout"] = []
+    qos = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node.create_subscription(Log, "/rosout", lambda entry: heard.append(logged(entry)), qos)
+
+
+def tell_time(seconds):
+    from rosgraph_msgs.msg import Clock
+
+    if "/clock" not in endpoints:
+        endpoints["/clock"] = (node.create_publisher(Clock, "/clock", 10), "rosgraph_msgs/msg/Clock")
+    message = Clock()
+    message.clock.sec, message.clock.nanosec = int(seconds), round(seconds % 1 * 1e9)
+    endpoints["/clock"][0].publish(message)
+
+
+def simulate(wanted):
+    node.set_parameters([rclpy.Parameter("use_sim_time", value=wanted)])
+
+
+def describe(asked, type_name, type_hash, timeout):
+    """What a node says a type is made of."""
+    from type_description_interfaces.srv import GetTypeDescription
+
+    service = node.create_client(GetTypeDescription, asked + "/get_type_description")
+    assert service.wait_for_service(timeout)
+    request = GetTypeDescription.Request(type_name=type_name, type_hash=type_hash, include_type_sources=False)
+    future = service.call_async(request)
+    end = time.monotonic() + timeout
+    while not future.done() and time.monotonic() < end:
+        time.sleep(0.002)
+    found = future.result()
+    node.destroy_client(service)
+    return described(found)
+
+
 def begin(name, namespace="/"):
     global node
     rclpy.init()
@@ -257,6 +305,13 @@ COMMANDS = {
     "endpoints": graph_endpoints,
     "counts": lambda topic: [node.count_publishers(topic), node.count_subscribers(topic)],
     "service_counts": lambda name: [node.count_services(name), node.count_clients(name)],
+    "log": log,
+    "hear_log": hear_log,
+    "heard_log": lambda: inboxes["/rosout"],
+    "tell_time": tell_time,
+    "simulate": simulate,
+    "now": lambda: node.get_clock().now().nanoseconds / 1e9,
+    "describe": describe,
     "process": process,
     "close_node": close_node,
     "mortal": lambda name: fork(lambda: mortal(name)),

@@ -4,6 +4,7 @@ has a node only in what it forks.
 publisher KEY TOPIC TYPE QOS              publish KEY FIRST COUNT SIZE PAUSE      the messages are those of ros2_samples.py
 subscription KEY TOPIC TYPE SIZE QOS      heard KEY, events KEY                   what came so far, since it was made
 service, client KEY NAME TYPE             call KEY FIRST COUNT SIZE TIMEOUT       what was wrong with the answers
+log TEXTS, hear_log, heard_log            tell_time SECONDS, simulate BOOL, now        describe NODE TYPE HASH TIMEOUT
 matched KEY, ready KEY, close KEY         nodes, topics, services, services_of NODE, endpoints TOPIC, counts TOPIC
 process, tables                           what it holds
 mortal NAME, kill PID                     a node in a child, and its end
@@ -17,7 +18,7 @@ import struct
 import sys
 import time
 
-from commands import fork, kill, process, run
+from commands import described, fork, kill, logged, process, run
 from ros2_samples import QOS, Inbox, build, differences, expected, request, response, sample
 
 import roslet
@@ -243,6 +244,33 @@ def write_keyed(writer, instance, name, now, value):
     writer.write(name + bytes(-len(name) % 4) + struct.pack("<i", value), now, key=instance)
 
 
+def log(texts):
+    for level, text in zip(("debug", "info", "warning", "error", "fatal"), texts, strict=True):
+        getattr(node.log, level)(text)
+
+
+def hear_log():
+    heard = inboxes["/rosout"] = []
+    qos = roslet.QoS(1000, durability="transient_local")
+    node.subscribe("/rosout", "rcl_interfaces/msg/Log", lambda entry: heard.append(logged(entry)), qos=qos)
+
+
+def tell_time(seconds):
+    if "/clock" not in endpoints:
+        endpoints["/clock"] = node.publisher("/clock", "rosgraph_msgs/msg/Clock")
+    endpoints["/clock"].publish(clock=roslet.Time.from_sec(seconds))
+
+
+def describe(asked, type_name, type_hash, timeout):
+    """What a node says a type is made of."""
+    service = asked + "/get_type_description"
+    with node.client(service, "type_description_interfaces/srv/GetTypeDescription") as asking:
+        found = asking.call(
+            type_name=type_name, type_hash=type_hash, include_type_sources=False, timeout=timeout
+        )
+    return described(found)
+
+
 def begin(name, namespace="", network=None):
     global node
     roslet.load(WORKSPACE)
@@ -323,6 +351,13 @@ COMMANDS = {
     "write_keyed": of_instance(write_keyed),
     "dispose_keyed": of_instance(lambda writer, key, name, now: writer.dispose(key, now, name)),
     "unregister_keyed": of_instance(lambda writer, key, name, now: writer.unregister(key, now, name)),
+    "log": log,
+    "hear_log": hear_log,
+    "heard_log": lambda: inboxes["/rosout"],
+    "tell_time": tell_time,
+    "simulate": lambda wanted: node.set_parameter("use_sim_time", wanted),
+    "now": lambda: node.now().to_sec(),
+    "describe": describe,
     "process": process,
     "tables": tables,
     "crowd": crowd,

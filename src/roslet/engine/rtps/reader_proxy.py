@@ -11,7 +11,8 @@ if TYPE_CHECKING:
 
 
 class ReaderProxy:
-    """A matched remote reader. `acked`: it has every sample up to this number; `vendor`: that of its participant."""
+    """A matched remote reader. `acked`: it has every sample up to this number; `vendor`: that of its participant; `late`:
+    whether it gets what was written before it came."""
 
     __slots__ = (
         "acked",
@@ -21,6 +22,7 @@ class ReaderProxy:
         "frag_count",
         "guid",
         "info_dst",
+        "late",
         "next_preface",
         "parts",
         "preface",
@@ -38,12 +40,14 @@ class ReaderProxy:
         start: int,
         reliable: bool,
         vendor: bytes,
+        late: bool,
     ) -> None:
         self.data = remote
         self.guid = remote.guid
         self.addresses = addresses
         self.reliable = reliable
         self.vendor = vendor
+        self.late = late
         self.start = start  # samples before this one are not for it
         self.acked = start - 1
         self.sent = start - 1  # up to here it was told of every number, where some were for others

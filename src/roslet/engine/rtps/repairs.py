@@ -87,6 +87,7 @@ class Repairs:
         writer = self._writer
         superseded = self._superseded(change)
         if not superseded:
+            yield from self._introductions(proxy)
             size = len(change.inline_qos) + len(change.payload)
             pad = bytes(-size & 3)
             front = self._preface(proxy, change, size + len(pad)) + change.inline_qos
@@ -139,6 +140,7 @@ class Repairs:
     ) -> "Iterator[Bulk]":
         """Heartbeats of no more than this sample: the readers would ask for those that wait behind it."""
         writer = self._writer
+        yield from self._introductions(proxy)
         reader_id = ENTITYID_UNKNOWN if proxy is None else proxy.guid[12:]
         parts = [self._common.header, proxy.info_dst if proxy is not None else b""]
         if count:
@@ -147,9 +149,16 @@ class Repairs:
         parts.append(bytes(writer.heartbeat(reader_id, False, change.sequence).emit()))
         yield (b"".join(parts),), addresses, self._mark(change.sequence, WHOLE)
 
+    def _introductions(self, proxy: "ReaderProxy | None") -> "Iterator[Bulk]":
+        """Before a heartbeat to all (`proxy` None): see `Writer.strangers`."""
+        for one in self._writer.strangers() if proxy is None else ():
+            yield self._introduction(one), one.addresses, None
+
     def ask_for(self, sent: "tuple[int, int]") -> None:
         """Ask for what has gone out; more is on its way."""
         writer = self._writer
+        for one in writer.strangers():
+            self.introduce(one)
         sequence, fragment = sent
         if fragment == WHOLE:
             beat = writer.heartbeat(ENTITYID_UNKNOWN, False, sequence).emit()
@@ -194,14 +203,21 @@ class Repairs:
 
     # -- to one reader
 
-    def introduce(self, proxy: "ReaderProxy") -> None:
-        """Tell a reader where we are; it asks for what it lacks. What is not for it is a gap."""
+    def introduce(self, proxy: "ReaderProxy", addresses: "tuple[Address, ...]" = ()) -> None:
+        """Tell a reader where it begins, and where we are; it asks for what it lacks. What is not for it is a gap."""
+        self._outbox.send(self._introduction(proxy), addresses or proxy.addresses)
+
+    def _introduction(self, proxy: "ReaderProxy") -> "tuple[bytes | bytearray, ...]":
         writer = self._writer
+        reader_id = proxy.guid[12:]
         parts: list[bytes | bytearray] = [self._common.header, proxy.info_dst]
         if 1 < proxy.start <= writer.last + 1:
-            parts.append(Gap(proxy.guid[12:], writer.entity_id, 1, number_set.NumberSet(proxy.start)).emit())
-        parts.append(writer.heartbeat(proxy.guid[12:], False).emit())
-        self._outbox.send(tuple(parts), proxy.addresses)
+            parts.append(Gap(reader_id, writer.entity_id, 1, number_set.NumberSet(proxy.start)).emit())
+        if not proxy.late:
+            parts.append(writer.heartbeat(reader_id, False, proxy.start - 1).emit())
+        if proxy.late or (proxy.start <= writer.last and not self.busy):
+            parts.append(writer.heartbeat(reader_id, False).emit())
+        return tuple(parts)
 
     def tell_skipped(self, only: bytes, last: int) -> None:
         """A GAP, to reader `only` or to all, over what went to others only, up to number `last`."""

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 # Every so many samples a heartbeat rides along, so that a fast writer hears of losses without a timer.
 PIGGYBACK = 16
-# How many samples a reliable reader that has never answered is told of beforehand, each in turn.
+# Before how many of its first samples a reliable reader that has never answered is introduced to us.
 GREETINGS = 8
 # Seconds from a sample to the heartbeat that asks for its acknowledgement, doubled up to the longest while nobody answers.
 HEARTBEAT_DELAY = 0.02
@@ -268,6 +268,8 @@ class Writer:
         beat.liveliness = True
         if self._stale:
             self._refresh()
+        for one in self.strangers():
+            self._repairs.introduce(one)
         self._outbox.send((self._common.header, beat.emit()), self._addresses)
 
     def close(self) -> None:
@@ -294,7 +296,7 @@ class Writer:
             self.history.forget_expired(now)
         late = self.keeps and remote.qos.durability >= TRANSIENT_LOCAL
         start = self.history.first(self.last + 1) if late else self.last + 1
-        proxy = ReaderProxy(remote, addresses, start, remote.qos.reliable and self.reliable, vendor)
+        proxy = ReaderProxy(remote, addresses, start, remote.qos.reliable and self.reliable, vendor, late)
         proxy.sent = self.last
         self._least = min(self._least, proxy.acked) if proxy.reliable else self._least
         self.proxies[remote.guid] = proxy
@@ -309,13 +311,25 @@ class Writer:
 
     def _greet(self, sequence: int) -> None:
         """Before sample `sequence`, introduce us again to readers that have said nothing yet: the first introduction may
-        have come before they knew of us, and Cyclone takes what comes before any for history, which a volatile reader of it
-        has no use for."""
+        have come before they knew of us. A volatile reader of Cyclone takes for history, of which it has no use, what the
+        first heartbeat that it sees tells of, so until it answers each one says where it begins."""
         self._strangers = False
+        beats = self._since_heartbeat + 1 >= PIGGYBACK
         for proxy in self.proxies.values():
-            if proxy.reliable and proxy.count < 0 and sequence - proxy.start < GREETINGS:
+            if proxy.reliable and proxy.count < 0:
                 self._strangers = True
-                self._repairs.introduce(proxy)
+                if beats or sequence - proxy.start < GREETINGS:
+                    self._repairs.introduce(proxy)
+
+    def strangers(self) -> "list[ReaderProxy]":
+        """The reliable readers that have said nothing yet and for which there are samples: see `_greet`."""
+        if not self._strangers:
+            return []
+        return [
+            one
+            for one in self.proxies.values()
+            if one.reliable and one.count < 0 and not one.late and one.start <= self.last
+        ]
 
     def moved(self) -> None:
         """Our host's addresses have changed."""
@@ -365,13 +379,13 @@ class Writer:
 
     # -- heartbeats
 
-    def heartbeat(self, reader_id: bytes, final: bool, last: int = 0) -> Heartbeat:
-        """The next one, of the samples up to `last`, all of them where 0."""
+    def heartbeat(self, reader_id: bytes, final: bool, last: "int | None" = None) -> Heartbeat:
+        """The next one, of the samples up to `last`, all of them where None."""
         self._heartbeats += 1
         first = self.history.first(self.last + 1)
-        if last:
-            first = min(first, last + 1)
-        return Heartbeat(reader_id, self.entity_id, first, last or self.last, self._heartbeats, final)
+        if last is None:
+            last = self.last
+        return Heartbeat(reader_id, self.entity_id, min(first, last + 1), last, self._heartbeats, final)
 
     def next_count(self) -> int:
         """For a HEARTBEAT_FRAG."""
@@ -405,11 +419,15 @@ class Writer:
         behind = [one for one in self.proxies.values() if one.reliable and one.acked < self.last]
         if not behind:
             return
-        if self._directed or len(behind) == 1 or 2 * len(behind) <= len(self.addresses):
+        strangers = self.strangers()
+        if strangers or self._directed or len(behind) == 1 or 2 * len(behind) <= len(self.addresses):
             # Whoever has everything would answer too.
             for one in behind:
                 if self._directed:
                     self._repairs.tell_skipped(one.guid, self.last)
+                if one in strangers:
+                    self._repairs.introduce(one)
+                    continue
                 beat = self.heartbeat(one.guid[12:], False).emit()
                 self._outbox.send((self._common.header, one.info_dst, beat), one.addresses)
         else:
@@ -432,6 +450,7 @@ class Writer:
         if value.count == proxy.count:
             self._common.count("acknack-repeated")
             return
+        first = proxy.count < 0
         proxy.count = value.count
         if self._lifespan is not None:
             self.history.forget_expired(now)
@@ -447,6 +466,9 @@ class Writer:
         if value.state.bits and self._repairs.send_again(proxy, value, now, reply or proxy.addresses):
             self._delay = HEARTBEAT_DELAY
             self._ask_at(now + self._delay)
+        elif first and not proxy.late and proxy.acked < self.last:
+            # It knows of us only now.
+            self._repairs.introduce(proxy, reply or proxy.addresses)
         elif not value.final and not self._repairs.busy:
             beat = self.heartbeat(proxy.guid[12:], proxy.acked >= self.last).emit()
             self._outbox.send((self._common.header, proxy.info_dst, beat), reply or proxy.addresses)

@@ -80,6 +80,9 @@ try:
         sys.exit(0)
 except KeyboardInterrupt:
     ended.set()
+    end = time.monotonic() + 5
+    while how == "SIGINT in a callback" and rclpy.ok() and time.monotonic() < end:
+        time.sleep(0.01)  # the handler has another thread shut down
     print("KeyboardInterrupt", rclpy.ok())
 except ExternalShutdownException:
     ended.set()
