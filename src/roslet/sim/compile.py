@@ -88,6 +88,12 @@ def edges(design: str) -> str:
     return "".join(lines)
 
 
+def cold(design: str) -> str:
+    """The design, with what does not run at every edge compiled without optimization: a sixth of the time is saved."""
+    functions = r"^(?:CXXRTL_EXTREMELY_COLD\n)?(?=void p_top::(?:reset|debug_eval|debug_info)\()"
+    return re.sub(functions, '__attribute__((optimize("O0")))\n', design, flags=re.MULTILINE)
+
+
 def build(top: Any) -> pathlib.Path:
     """The shared library of a design, for `model.Model`. `top` is a component; inputs that are clocks are plain inputs.
 
@@ -97,7 +103,14 @@ def build(top: Any) -> pathlib.Path:
     yosys, headers, version = _yosys()
     compiler = os.environ.get("CXX", "g++")
     machine = _run([compiler, "-dumpfullversion", "-dumpmachine"], HERE)
-    parts = (text, DRIVER.read_text(encoding="utf-8"), SCRIPT, " ".join(FLAGS), version, compiler, machine)
+    parts = (
+        text,
+        DRIVER.read_text(encoding="utf-8"),
+        pathlib.Path(__file__).read_text(encoding="utf-8"),
+        version,
+        compiler,
+        machine,
+    )
     digest = hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
     folder = cache() / digest
     library = folder / "model.so"
@@ -110,6 +123,7 @@ def build(top: Any) -> pathlib.Path:
         _run([*yosys, "-q", "-p", SCRIPT], work)
         design = (work / "design.cc").read_text(encoding="utf-8")
         (work / "edges.inc").write_text(edges(design), encoding="utf-8")
+        (work / "design.cc").write_text(cold(design), encoding="utf-8")
         feedback = "converged = false" in design
         includes = [f"-DFEEDBACK={int(feedback)}", f"-I{work}", f"-I{headers}"]
         _run([compiler, *FLAGS, *includes, str(DRIVER), "-o", "model.so"], work)
