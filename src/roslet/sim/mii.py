@@ -174,10 +174,11 @@ class Mii:
         check: bytes | None = None,
         preamble: int = PREAMBLE_SIZE,
         errors: Sequence[int] = (),
+        pad: bool = True,
     ) -> None:
-        """Let a frame into the design, behind those that wait. It is padded; `check`: another FCS than the right one;
+        """Let a frame into the design, behind those that wait, with its FCS. `check`: another FCS than the right one;
         `preamble`: octets of it; `errors`: octets of the frame, counted from 0, beside which rx_er is high."""
-        padded = frame.ljust(MIN_SIZE, b"\0")
+        padded = frame.ljust(MIN_SIZE, b"\0") if pad else frame
         front = bytes([PREAMBLE]) * preamble + bytes([SFD])
         symbols = symbols_of(front + padded + (fcs(padded) if check is None else check), self.width)
         each = 8 // self.width

@@ -127,7 +127,8 @@ def test_two_hosts_ping_each_other() -> None:
 def test_an_echo_that_is_not_answered_is_lost() -> None:
     host = known(a_host())
     sequence = host.ping(B_IP, 1.0)
-    assert host.deadline() == 6.0
+    assert host.deadline() == 0.0, "a frame is to be sent"
+    assert len(host.frames_to_send(1.0)) == 1 and host.deadline() == 6.0
     host.handle_deadline(6.0)
     assert host.next_event() == EchoLost(B_IP, sequence)
     assert host.deadline() is None

@@ -120,7 +120,9 @@ class Host:
         return self._events.pop(0) if self._events else None
 
     def deadline(self) -> "float | None":
-        """When `handle_deadline` is to be called, at the latest."""
+        """When `frames_to_send` has something, or `handle_deadline` something to do."""
+        if self._frames:
+            return 0.0
         times = [self.neighbours.deadline(), self.reassembly.deadline(), self.groups.deadline()]
         times += [when + ECHO_TIMEOUT for _, when in self._echoes.values()]
         due = [at for at in times if at is not None]
