@@ -30,6 +30,8 @@ _LOCATIONS = {
     "rospy": pathlib.Path("/usr/lib/python3/dist-packages/rospy"),
     "genpy": pathlib.Path("/usr/lib/python3/dist-packages/genpy"),
     "tshark": pathlib.Path("/usr/bin/tshark"),
+    "ping": pathlib.Path("/usr/bin/ping"),
+    "arping": pathlib.Path("/usr/bin/arping"),
     "rosmaster": pathlib.Path("/usr/bin/rosmaster"),
     "rostopic": pathlib.Path("/usr/bin/rostopic"),
     "rosnode": pathlib.Path("/usr/bin/rosnode"),

@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterator
 
 from docs.pages import ROOT, code, table_rows
+from roslet.engine.net import limits as host
 from roslet.engine.rtps.limits import Limits
 
 PAGE = "docs/robustness.md"
@@ -67,7 +68,8 @@ def test_every_bound_is_listed_with_its_value() -> None:
             table[code(constant)[0]] = float(number) * UNITS[unit]
             assert reason, constant
     assert limits == {name: float(getattr(Limits(), name)) for name in Limits._fields}
-    assert listed == {name: float(value) for name, value in bounds().items()}
+    of_host = {f"Host.{name}": getattr(host.Limits(), name) for name in host.Limits._fields}
+    assert listed == {name: float(value) for name, value in {**bounds(), **of_host}.items()}
 
 
 def reasons() -> set[str]:

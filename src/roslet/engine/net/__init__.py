@@ -1,0 +1,5 @@
+"""A small Ethernet host without sockets or clocks: ARP, IPv4, ICMP echo, IGMP, UDP. Runs on MicroPython.
+
+`host.Host` is what a runtime drives, frame by frame; the other modules are its parts. Times are float seconds of any
+monotonic clock. Addresses are text at the edge ("192.168.1.2"), octets within.
+"""
