@@ -7,7 +7,7 @@ limit.
 from __future__ import annotations
 
 import random
-from collections.abc import Awaitable, Callable, Iterable, Sequence
+from collections.abc import Awaitable, Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from amaranth.hdl import Elaboratable
@@ -29,15 +29,25 @@ class Bench:
     """A block, what is sent to it and what it gave. Ports are found by name: `bench.send("i", frames)`.
 
     `stalls` is how often, of a hundred cycles, a sender has nothing or a receiver is not ready. `STALLS` are worth trying.
+    `clocks` are the periods of domains besides `sync`, of any phase.
     """
 
-    def __init__(self, dut: Elaboratable, stalls: int = 30, seed: int = 0, period: float = 1e-8) -> None:
+    def __init__(
+        self,
+        dut: Elaboratable,
+        stalls: int = 30,
+        seed: int = 0,
+        period: float = 1e-8,
+        clocks: Mapping[str, float] | None = None,
+    ) -> None:
         self.dut: Any = dut
         self.stalls = stalls
         self.random = random.Random(seed)
         self.counts: dict[str, int] = {}
         self._simulator = Simulator(dut)
         self._simulator.add_clock(period)
+        for domain, other in (clocks or {}).items():
+            self._simulator.add_clock(other, phase=other * self.random.random(), domain=domain)
         self._waiting = 0
         self._faults: list[str] = []
         self._received: dict[str, list[tuple[bytes, Any]]] = {}
