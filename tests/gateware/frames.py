@@ -25,6 +25,14 @@ class Bad(bytes):
     """A frame that ends badly."""
 
 
+async def taken(ctx: Any, stream: Any) -> None:
+    """Wait until the item at `stream` has been taken. Amaranth's `until` does not stand being left behind by a simulation
+    that ends."""
+    ready = False
+    while not ready:
+        (_, _, ready) = await ctx.tick().sample(stream.ready)
+
+
 class Bench:
     """A block, what is sent to it and what it gave. Ports are found by name: `bench.send("i", frames)`.
 
@@ -77,7 +85,7 @@ class Bench:
                         await ctx.tick()
                     ctx.set(port.stream.payload, item)
                     ctx.set(port.stream.valid, 1)
-                    await ctx.tick().until(port.stream.ready)
+                    await taken(ctx, port.stream)
                     ctx.set(port.stream.valid, 0)
             self._waiting -= 1
 

@@ -185,7 +185,6 @@ def test_the_last_octet_leaves_two_cycles_after_the_end() -> None:
     assert ends == [first_silent + 2]
 
 
-@pytest.mark.filterwarnings("ignore::amaranth.hdl.UnusedElaboratable")
 def test_only_nibbles_and_octets_are_widths() -> None:
     with pytest.raises(ValueError, match="a PHY gives 4 or 8 bits a cycle, not 2"):
         Receiver(2)

@@ -1,4 +1,4 @@
-"""Queues of frames, in one clock domain and between two.
+"""Queues of frames, in one clock domain and between two. What they give comes from registers.
 
 A queue keeps items, not frames: what goes in comes out as soon as it can, so a frame's beginning leaves before its end has
 come. An item takes 9 bits of memory, the width of common block RAMs: at an end the lowest bit of `data` is not kept, as
@@ -43,9 +43,9 @@ def _power_of_two(depth: int) -> int:
 
 
 class FrameFifo(wiring.Component):
-    """A queue of `depth` items within `sync`: `i` to `o`.
+    """A queue of `depth` items, and one in its output register, within `sync`: `i` to `o`.
 
-    Full, it makes `i` wait: nothing is dropped. Throughput one item a cycle; latency 2 cycles. `o` comes from registers.
+    Full, it makes `i` wait: nothing is dropped. Throughput one item a cycle; latency 2 cycles.
     """
 
     def __init__(self, depth: int) -> None:
@@ -56,7 +56,7 @@ class FrameFifo(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        m.submodules.queue = queue = SyncFIFOBuffered(width=_WIDTH, depth=self._depth)
+        m.submodules.queue = queue = SyncFIFOBuffered(width=_WIDTH, depth=self._depth + 1)
         _input(m, self.i.stream, queue)
         _output(m, queue, self.o.stream)
         return m
@@ -67,8 +67,7 @@ class AsyncFrameFifo(wiring.Component):
     `o_domain`: `i` to `o`.
 
     Full, it makes `i` wait: nothing is dropped. Throughput one item in a cycle of the slower clock. An item is valid at `o`
-    4 to 5 cycles of `o_domain` after the edge of `i_domain` with which it was taken. `o` comes from registers. Reset both
-    domains together.
+    at most 3 cycles of `o_domain` after the edge of `i_domain` with which it was taken. Reset both domains together.
     """
 
     def __init__(self, depth: int, i_domain: str, o_domain: str) -> None:
