@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import zlib
 from typing import Any
 
 import pytest
@@ -11,7 +10,6 @@ import pytest
 from gateware.frames import Bad, Bench
 from gateware.phy import IDLE, PREAMBLE, Cycle, fcs, play, sealed, shown, some
 from roslet.gateware.gmii import GmiiRx
-from roslet.gateware.ieee802_3 import frame_check
 from roslet.gateware.mii import MiiRx
 from roslet.gateware.receiver import REASONS, Receiver
 
@@ -19,7 +17,7 @@ FRAME = bytes.fromhex("ffff ffff ffff 0200 0000 0002 0806") + bytes(range(46))
 RX = pytest.mark.parametrize(("block", "width"), [(MiiRx, 4), (GmiiRx, 8)])
 
 
-def heard(block: type[Receiver], cycles: list[Cycle]) -> list[bytes | str]:
+def heard(block: type[MiiRx | GmiiRx], cycles: list[Cycle]) -> list[bytes | str]:
     """What the receiver makes of these cycles: good frames, and why others were dropped."""
     bench = Bench(block(), stalls=0)  # it cannot wait
     got = bench.receive("o")
@@ -45,27 +43,10 @@ def _name(bits: int) -> str:
     return reason
 
 
-@pytest.mark.parametrize("width", [4, 8])
-def test_the_check_sequence_is_that_of_the_catalogue(width: int) -> None:
-    bench = Bench(frame_check(width))
-    results = []
-
-    async def process(ctx: Any) -> None:
-        ctx.set(bench.dut.valid, 1)
-        for octet in b"123456789":
-            for data in (octet,) if width == 8 else (octet & 15, octet >> 4):
-                ctx.set(bench.dut.data, data)
-                await ctx.tick()
-        ctx.set(bench.dut.valid, 0)
-        results.append(ctx.get(bench.dut.crc))
-
-    bench.drive(process)
-    bench.run()
-    assert results == [0xCBF43926] == [zlib.crc32(b"123456789")]
-
-
 @RX
-def test_frames_of_all_sizes_are_taken_without_preamble_and_fcs(block: type[Receiver], width: int) -> None:
+def test_frames_of_all_sizes_are_taken_without_preamble_and_fcs(
+    block: type[MiiRx | GmiiRx], width: int
+) -> None:
     rng = random.Random(1)
     frames = [FRAME, *(some(rng, size) for size in (60, 61, 63, 64, 511, 1514))]
     cycles = [IDLE, *(cycle for frame in frames for cycle in shown(PREAMBLE + sealed(frame), width))]
@@ -73,7 +54,7 @@ def test_frames_of_all_sizes_are_taken_without_preamble_and_fcs(block: type[Rece
 
 
 @RX
-def test_the_preamble_may_be_shortened_and_of_any_length(block: type[Receiver], width: int) -> None:
+def test_the_preamble_may_be_shortened_and_of_any_length(block: type[MiiRx | GmiiRx], width: int) -> None:
     cycles = [IDLE]
     for length in (0, 1, 2, 6, 20):
         cycles += shown(b"\x55" * length + b"\xd5" + sealed(FRAME), width)
@@ -83,13 +64,13 @@ def test_the_preamble_may_be_shortened_and_of_any_length(block: type[Receiver], 
 
 
 @RX
-def test_one_cycle_between_frames_is_enough(block: type[Receiver], width: int) -> None:
+def test_one_cycle_between_frames_is_enough(block: type[MiiRx | GmiiRx], width: int) -> None:
     one = [*shown(PREAMBLE + sealed(FRAME), width, gap=0), IDLE]
     assert heard(block, [IDLE, *one * 5]) == [FRAME] * 5
 
 
 @RX
-def test_a_frame_with_a_wrong_fcs_is_dropped_whole(block: type[Receiver], width: int) -> None:
+def test_a_frame_with_a_wrong_fcs_is_dropped_whole(block: type[MiiRx | GmiiRx], width: int) -> None:
     right = sealed(FRAME)
     cycles = [IDLE]
     for bit in (0, 8 * 30 + 3, 8 * 60, 8 * 63 + 7):
@@ -100,7 +81,7 @@ def test_a_frame_with_a_wrong_fcs_is_dropped_whole(block: type[Receiver], width:
 
 
 @RX
-def test_an_error_of_the_phy_anywhere_drops_the_frame_whole(block: type[Receiver], width: int) -> None:
+def test_an_error_of_the_phy_anywhere_drops_the_frame_whole(block: type[MiiRx | GmiiRx], width: int) -> None:
     carrier = PREAMBLE + sealed(FRAME)
     last = len(carrier) * 8 // width - 1
     places = [0, 1, 5, 8, 9, 40, last - 1, last]
@@ -112,14 +93,14 @@ def test_an_error_of_the_phy_anywhere_drops_the_frame_whole(block: type[Receiver
 
 
 @RX
-def test_an_error_outside_of_frames_means_nothing(block: type[Receiver], width: int) -> None:
+def test_an_error_outside_of_frames_means_nothing(block: type[MiiRx | GmiiRx], width: int) -> None:
     carrier = shown(PREAMBLE + sealed(FRAME), width)
     assert heard(block, [(0xE, 0, 1)] * 4 + carrier + [(0, 0, 1)] * 4 + carrier) == [FRAME, FRAME]
 
 
 @RX
 @pytest.mark.parametrize("size", [0, 1, 3, 4, 5, 59])
-def test_a_runt_is_dropped_even_with_a_right_fcs(block: type[Receiver], width: int, size: int) -> None:
+def test_a_runt_is_dropped_even_with_a_right_fcs(block: type[MiiRx | GmiiRx], width: int, size: int) -> None:
     runt = PREAMBLE + FRAME[:size] + fcs(FRAME[:size])
     cycles = [IDLE, *shown(runt, width), *shown(PREAMBLE + sealed(FRAME), width), *shown(runt[:-4], width)]
     assert heard(block, cycles) == ["runt", FRAME, "runt"]
@@ -127,7 +108,7 @@ def test_a_runt_is_dropped_even_with_a_right_fcs(block: type[Receiver], width: i
 
 @RX
 @pytest.mark.parametrize("size", [1515, 1700])
-def test_a_giant_is_dropped_whole(block: type[Receiver], width: int, size: int) -> None:
+def test_a_giant_is_dropped_whole(block: type[MiiRx | GmiiRx], width: int, size: int) -> None:
     giant = some(random.Random(size), size)
     cycles = [IDLE, *shown(PREAMBLE + sealed(giant), width), *shown(PREAMBLE + sealed(FRAME), width)]
     assert heard(block, cycles) == ["giant", FRAME]
@@ -143,7 +124,9 @@ def test_an_odd_number_of_nibbles_is_dropped() -> None:
 
 
 @RX
-def test_a_carrier_without_a_start_frame_delimiter_is_no_frame(block: type[Receiver], width: int) -> None:
+def test_a_carrier_without_a_start_frame_delimiter_is_no_frame(
+    block: type[MiiRx | GmiiRx], width: int
+) -> None:
     cycles = [IDLE]
     good = shown(PREAMBLE + sealed(FRAME), width)
     for carrier in (b"\x55", b"\x55" * 80, b"\x55\x5e" + FRAME, FRAME, b"\x55\x55\x00" + PREAMBLE + FRAME):
@@ -152,14 +135,14 @@ def test_a_carrier_without_a_start_frame_delimiter_is_no_frame(block: type[Recei
 
 
 @RX
-def test_a_frame_that_had_begun_at_reset_is_nothing(block: type[Receiver], width: int) -> None:
+def test_a_frame_that_had_begun_at_reset_is_nothing(block: type[MiiRx | GmiiRx], width: int) -> None:
     carrier = shown(PREAMBLE + sealed(FRAME), width)
     assert heard(block, carrier[40:] + carrier) == [FRAME]
     assert heard(block, carrier[3:] + carrier) == [FRAME]
 
 
 @RX
-def test_a_cut_anywhere_gives_no_good_frame(block: type[Receiver], width: int) -> None:
+def test_a_cut_anywhere_gives_no_good_frame(block: type[MiiRx | GmiiRx], width: int) -> None:
     carrier = shown(PREAMBLE + sealed(FRAME), width, gap=0)
     cuts = range(1, len(carrier), 7)
     cycles = [IDLE, *(c for cut in cuts for c in (*carrier[:cut], IDLE)), *carrier, IDLE]

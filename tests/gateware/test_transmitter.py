@@ -19,7 +19,7 @@ TX = pytest.mark.parametrize(("block", "width"), [(MiiTx, 4), (GmiiTx, 8)])
 
 
 def sent(
-    block: type[Transmitter], width: int, frames: Sequence[bytes], carriers: int
+    block: type[MiiTx | GmiiTx], width: int, frames: Sequence[bytes], carriers: int
 ) -> tuple[Watch, dict[str, int]]:
     bench = Bench(block(), stalls=0)  # it cannot wait
     dut = bench.dut
@@ -32,7 +32,7 @@ def sent(
 
 
 @TX
-def test_a_frame_gets_preamble_padding_and_fcs(block: type[Transmitter], width: int) -> None:
+def test_a_frame_gets_preamble_padding_and_fcs(block: type[MiiTx | GmiiTx], width: int) -> None:
     rng = random.Random(2)
     frames = [HEADER, *(HEADER + some(rng, size) for size in (1, 45, 46, 47, 1500)), b"\x01"]
     watch, counts = sent(block, width, frames, len(frames))
@@ -41,13 +41,13 @@ def test_a_frame_gets_preamble_padding_and_fcs(block: type[Transmitter], width: 
 
 
 @TX
-def test_the_gap_between_frames_is_96_bit_times(block: type[Transmitter], width: int) -> None:
+def test_the_gap_between_frames_is_96_bit_times(block: type[MiiTx | GmiiTx], width: int) -> None:
     watch, _ = sent(block, width, [HEADER, HEADER + bytes(47), HEADER + bytes(100)] * 2, 6)
     assert watch.gaps[1:] == [96 // width] * 5
 
 
 @TX
-def test_a_frame_with_a_bad_end_is_spoilt(block: type[Transmitter], width: int) -> None:
+def test_a_frame_with_a_bad_end_is_spoilt(block: type[MiiTx | GmiiTx], width: int) -> None:
     frames = [Bad(HEADER), HEADER, Bad(HEADER + bytes(60)), HEADER]
     watch, counts = sent(block, width, frames, 4)
     assert watch.carriers[::2] == [
@@ -59,7 +59,7 @@ def test_a_frame_with_a_bad_end_is_spoilt(block: type[Transmitter], width: int) 
 
 
 @TX
-def test_a_giant_is_spoilt_and_counted(block: type[Transmitter], width: int) -> None:
+def test_a_giant_is_spoilt_and_counted(block: type[MiiTx | GmiiTx], width: int) -> None:
     watch, counts = sent(block, width, [bytes(1515), HEADER, Bad(bytes(1516)), HEADER], 4)
     assert watch.frames == [HEADER.ljust(60, b"\0")] * 2
     assert [len(carrier) for carrier in watch.carriers] == [8 + 1518, 8 + 64] * 2
@@ -68,7 +68,9 @@ def test_a_giant_is_spoilt_and_counted(block: type[Transmitter], width: int) -> 
 
 @TX
 @pytest.mark.parametrize("late", [1, 13, 59, 60, 61, 99])
-def test_a_frame_that_is_late_is_spoilt_and_counted(block: type[Transmitter], width: int, late: int) -> None:
+def test_a_frame_that_is_late_is_spoilt_and_counted(
+    block: type[MiiTx | GmiiTx], width: int, late: int
+) -> None:
     """Of a hundred octets the one numbered `late` does not come in time."""
     bench = Bench(block())
     dut = bench.dut
@@ -95,7 +97,7 @@ def test_a_frame_that_is_late_is_spoilt_and_counted(block: type[Transmitter], wi
 
 
 @TX
-def test_a_frame_of_no_octets_is_not_sent(block: type[Transmitter], width: int) -> None:
+def test_a_frame_of_no_octets_is_not_sent(block: type[MiiTx | GmiiTx], width: int) -> None:
     watch, _ = sent(block, width, [b"", Bad(b""), HEADER, b"", HEADER, b""], 2)
     assert watch.carriers == [PREAMBLE + sealed(HEADER)] * 2
     assert watch.gaps[1] >= 96 // width

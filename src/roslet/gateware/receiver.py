@@ -7,6 +7,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware import ieee802_3
+from roslet.gateware.crc import FrameCheck
 from roslet.gateware.stream import OCTET, FrameSignature
 
 REASONS = ("fcs", "rx_er", "runt", "giant", "odd", "sfd")
@@ -54,9 +55,11 @@ class Receiver(wiring.Component):
             octet = Cat(lower, data)
         taken = Signal(range(ieee802_3.MAX_SIZE + 1))
         behind = Signal(8 * ieee802_3.FCS_SIZE)
+        full = taken[2:].any()  # FCS_SIZE and more
+        enough = taken[6:].any()  # MIN_SIZE and more
         m.d.comb += item.data.eq(behind[:8])
 
-        m.submodules.crc = crc = ieee802_3.frame_check(width)
+        m.submodules.crc = crc = FrameCheck(width)
         m.d.comb += crc.data.eq(data)
 
         def end_badly(reason: str) -> None:
@@ -67,7 +70,7 @@ class Receiver(wiring.Component):
         with m.FSM(init="DROP"):
             for state in ("IDLE", "PREAMBLE"):
                 with m.State(state):
-                    m.d.comb += crc.start.eq(1)
+                    m.d.comb += crc.clear.eq(1)
                     m.d.sync += taken.eq(0)
                     if width == 4:
                         m.d.sync += half.eq(0)
@@ -86,14 +89,13 @@ class Receiver(wiring.Component):
                         end_badly("sfd")
                         m.next = "DROP"
             with m.State("DATA"):
-                m.d.comb += crc.valid.eq(1)
                 with m.If(~valid):
                     m.d.comb += [give.eq(1), item.end.eq(1)]
                     with m.If(half):
                         end_badly("odd")
-                    with m.Elif(taken < ieee802_3.MIN_SIZE):
+                    with m.Elif(~enough):
                         end_badly("runt")
-                    with m.Elif(~crc.match_detected):
+                    with m.Elif(~crc.match):
                         end_badly("fcs")
                     m.next = "IDLE"
                 with m.Elif(error):
@@ -101,7 +103,7 @@ class Receiver(wiring.Component):
                     m.next = "DROP"
                 with m.Elif(whole):
                     m.d.sync += [taken.eq(taken + 1), behind.eq(Cat(behind[8:], octet))]
-                    m.d.comb += give.eq(taken >= ieee802_3.FCS_SIZE)
+                    m.d.comb += give.eq(full)
                     with m.If(taken == ieee802_3.MAX_SIZE):
                         end_badly("giant")
                         m.next = "DROP"

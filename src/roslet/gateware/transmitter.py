@@ -7,6 +7,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware import ieee802_3
+from roslet.gateware.crc import FrameCheck
 from roslet.gateware.stream import FrameSignature
 
 MIN_OCTETS = ieee802_3.MIN_SIZE - ieee802_3.FCS_SIZE
@@ -54,82 +55,85 @@ class Transmitter(wiring.Component):
             m.d.sync += [done.eq(~done), octet.eq(octet >> 4)]
 
         sending, checking, spoilt = Signal(), Signal(), Signal()
-        m.submodules.crc = crc = ieee802_3.frame_check(width)
-        m.d.comb += crc.data.eq(Mux(checking, ~crc.crc[:width], octet[:width]))
+        m.submodules.crc = crc = FrameCheck(width)
+        m.d.comb += crc.data.eq(Mux(checking, ~crc.fcs[:width], octet[:width]))
         m.d.sync += [
             self.tx_en.eq(sending),
             self.tx_er.eq(checking & spoilt),
-            self.txd.eq(Mux(checking, crc.crc[:width] ^ spoilt.replicate(width), octet[:width])),
+            self.txd.eq(Mux(checking, crc.fcs[:width] ^ spoilt.replicate(width), octet[:width])),
         ]
 
         count = Signal(range(MAX_OCTETS))  # of octets in this state, but over DATA and PAD together
+        short = Signal()  # padding is needed, if this octet was the last one
         remains = Signal()  # of a spoilt frame
+        with m.If(done):
+            m.d.sync += count.eq(count + 1)
+        filled = count[:6] == MIN_OCTETS - 1
 
-        def check() -> None:
+        def begin(state: str) -> None:
             m.d.sync += count.eq(0)
-            m.next = "FCS"
+            m.next = state
 
         with m.FSM():
             with m.State("WAIT"):
-                m.d.comb += [crc.start.eq(1), i.ready.eq(i.payload.end)]
-                m.d.sync += [count.eq(0), octet.eq(ieee802_3.PREAMBLE), spoilt.eq(0), remains.eq(0)]
+                m.d.comb += [crc.clear.eq(1), i.ready.eq(i.payload.end)]
+                m.d.sync += [
+                    count.eq(0),
+                    octet.eq(ieee802_3.PREAMBLE),
+                    short.eq(1),
+                    spoilt.eq(0),
+                    remains.eq(0),
+                ]
                 if width == 4:
                     m.d.sync += done.eq(0)
                 with m.If(i.valid & ~i.payload.end):
                     m.next = "PREAMBLE"
             with m.State("PREAMBLE"):
+                m.d.comb += [sending.eq(1), crc.clear.eq(1)]
+                with m.If(done):
+                    m.d.sync += octet.eq(ieee802_3.PREAMBLE)
+                    with m.If(count[:3] == ieee802_3.PREAMBLE_SIZE - 1):
+                        m.d.sync += octet.eq(ieee802_3.SFD)
+                    with m.If(count[:3] == ieee802_3.PREAMBLE_SIZE):
+                        m.d.comb += i.ready.eq(1)
+                        m.d.sync += octet.eq(i.payload.data)
+                        begin("DATA")
+            with m.State("DATA"):
                 m.d.comb += sending.eq(1)
                 with m.If(done):
-                    m.d.sync += [count.eq(count + 1), octet.eq(ieee802_3.PREAMBLE)]
-                    with m.If(count == ieee802_3.PREAMBLE_SIZE - 1):
-                        m.d.sync += octet.eq(ieee802_3.SFD)
-                    with m.If(count == ieee802_3.PREAMBLE_SIZE):
-                        m.d.comb += i.ready.eq(1)
-                        m.d.sync += [count.eq(0), octet.eq(i.payload.data)]
-                        m.next = "DATA"
-            with m.State("DATA"):
-                m.d.comb += [sending.eq(1), crc.valid.eq(1)]
-                with m.If(done):
                     m.d.comb += i.ready.eq(1)
-                    m.d.sync += [count.eq(count + 1), octet.eq(i.payload.data)]
+                    m.d.sync += octet.eq(i.payload.data)
+                    with m.If(filled):
+                        m.d.sync += short.eq(0)
                     with m.If(~i.valid):
                         m.d.comb += self.drop_underrun.eq(1)
                         m.d.sync += [spoilt.eq(1), remains.eq(1)]
-                        check()
-                    with m.Elif(i.payload.bad):
-                        m.d.sync += spoilt.eq(1)
-                        check()
+                        begin("FCS")
                     with m.Elif(i.payload.end):
-                        m.d.sync += octet.eq(0)
-                        with m.If(count < MIN_OCTETS - 1):
+                        m.d.sync += [octet.eq(0), spoilt.eq(i.payload.bad)]
+                        with m.If(short & ~filled & ~i.payload.bad):
                             m.next = "PAD"
                         with m.Else():
-                            check()
+                            begin("FCS")
                     with m.Elif(count == MAX_OCTETS - 1):
                         m.d.comb += self.drop_giant.eq(1)
                         m.d.sync += [spoilt.eq(1), remains.eq(1)]
-                        check()
+                        begin("FCS")
             with m.State("PAD"):
-                m.d.comb += [sending.eq(1), crc.valid.eq(1)]
-                with m.If(done):
-                    m.d.sync += count.eq(count + 1)
-                    with m.If(count == MIN_OCTETS - 1):
-                        check()
+                m.d.comb += sending.eq(1)
+                with m.If(done & filled):
+                    begin("FCS")
             with m.State("FCS"):
-                m.d.comb += [sending.eq(1), crc.valid.eq(1), checking.eq(1)]
-                with m.If(done):
-                    m.d.sync += count.eq(count + 1)
-                    with m.If(count == ieee802_3.FCS_SIZE - 1):
-                        m.d.sync += count.eq(0)
-                        m.next = "GAP"
-                        with m.If(remains):
-                            m.next = "DROP"
+                m.d.comb += [sending.eq(1), checking.eq(1)]
+                with m.If(done & (count[:2] == ieee802_3.FCS_SIZE - 1)):
+                    begin("GAP")
+                    with m.If(remains):
+                        m.next = "DROP"
             with m.State("DROP"):
                 m.d.comb += i.ready.eq(1)
                 with m.If(i.valid & i.payload.end):
-                    m.next = "GAP"
-            with m.State("GAP"):
-                m.d.sync += count.eq(count + 1)  # cycles, for once
-                with m.If(count == 8 // width * ieee802_3.GAP_SIZE - 2):  # WAIT takes the last
-                    m.next = "WAIT"
+                    begin("GAP")
+            # WAIT takes the last cycle of the gap: of GMII's an octet, of MII's half of one
+            with m.State("GAP"), m.If(count[:4] == ieee802_3.GAP_SIZE - (2 if width == 8 else 1)):
+                m.next = "WAIT"
         return m
