@@ -67,7 +67,7 @@ class AsyncFrameFifo(wiring.Component):
     `o_domain`: `i` to `o`.
 
     Full, it makes `i` wait: nothing is dropped. Throughput one item in a cycle of the slower clock. An item is valid at `o`
-    at most 3 cycles of `o_domain` after the edge of `i_domain` with which it was taken. Reset both domains together.
+    at most 3 cycles of `o_domain` after the edge of `i_domain` with which it was taken. The reset of `i_domain` empties it.
     """
 
     def __init__(self, depth: int, i_domain: str, o_domain: str) -> None:
