@@ -139,15 +139,15 @@ class Bench:
 
     def count(self, *names: str) -> None:
         """Count the cycles in which outputs are high: `bench.counts[name]`."""
-        for name in names:
-            self.counts[name] = 0
-            self._count(name, self._port(name))
+        self.counts.update(dict.fromkeys(names, 0))
+        signals = [self._port(name) for name in names]
 
-    def _count(self, name: str, signal: Any) -> None:
         async def process(ctx: Any) -> None:
             while True:
-                (_, _, high) = await ctx.tick().sample(signal)
-                self.counts[name] += int(bool(high))
+                (_, _, *high) = await ctx.tick().sample(*signals)
+                if any(high):
+                    for name, one in zip(names, high, strict=True):
+                        self.counts[name] += int(bool(one))
 
         self._simulator.add_testbench(process, background=True)
 
