@@ -94,10 +94,13 @@ class Transmitter(wiring.Component):
                     m.d.sync += octet.eq(ieee802_3.PREAMBLE)
                     with m.If(count[:3] == ieee802_3.PREAMBLE_SIZE - 1):
                         m.d.sync += octet.eq(ieee802_3.SFD)
-                    with m.If(count[:3] == ieee802_3.PREAMBLE_SIZE):
-                        m.d.comb += i.ready.eq(1)
-                        m.d.sync += octet.eq(i.payload.data)
-                        begin("DATA")
+                        m.next = "SFD"
+            with m.State("SFD"):
+                m.d.comb += [sending.eq(1), crc.clear.eq(1)]
+                with m.If(done):
+                    m.d.comb += i.ready.eq(1)
+                    m.d.sync += octet.eq(i.payload.data)
+                    begin("DATA")
             with m.State("DATA"):
                 m.d.comb += sending.eq(1)
                 with m.If(done):
