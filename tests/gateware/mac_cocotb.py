@@ -34,6 +34,7 @@ class Bed:
     def __init__(self, dut: Any, ready: int = 100) -> None:
         self.dut = dut
         self.received: list[bytes] = []
+        self.octets = bytearray()
         self.bad = 0
         self.dropped: Counter[str] = Counter()
         pins = [getattr(dut, f"pins__phy_{name}") for name in ("rxd", "rx_dv", "rx_er", "txd", "tx_en")]
@@ -65,7 +66,6 @@ class Bed:
         dut = self.dut
         drops = [(reason, getattr(dut, f"drop_{reason}")) for reason in REASONS]
         clock = RisingEdge(dut.clk)
-        octets = bytearray()
         while True:
             ready = self._random.randrange(100) < self._ready
             dut.rx__stream__ready.value = int(ready)
@@ -77,13 +77,13 @@ class Bed:
                 continue
             item = int(dut.rx__stream__payload.value)
             if not item & END:
-                octets.append(item & 0xFF)
+                self.octets.append(item & 0xFF)
                 continue
             if item & BAD:
                 self.bad += 1
             else:
-                self.received.append(bytes(octets))
-            octets.clear()
+                self.received.append(bytes(self.octets))
+            self.octets.clear()
 
     async def send(self, octets: bytes, end: int = END) -> None:
         """An octet as soon as it is taken."""
@@ -199,3 +199,32 @@ async def what_cannot_be_sent_is_spoilt_and_counted(dut: Any) -> None:
         b"after".ljust(60, b"\0"),
     ]
     assert bed.dropped == Counter(["tx_giant"])
+
+
+@cocotb.test()
+async def a_reset_of_one_cycle_amid_frames_leaves_nothing_of_them(dut: Any) -> None:
+    rng = random.Random(5)
+    bed = Bed(dut)
+    await bed.start()
+    for _ in range(4):
+        bed.received.clear()
+        await bed.source.send(GmiiFrame.from_payload(frame(rng, 200)))
+        sending = cocotb.start_soon(bed.send(frame(rng, 200)))
+        await Timer(RX_PERIOD * 2 * rng.randrange(40, 80), "ps")
+        await RisingEdge(dut.clk)
+        sending.cancel()
+        dut.tx__stream__valid.value = 0
+        dut.rst.value = 1
+        await RisingEdge(dut.clk)
+        dut.rst.value = 0
+        await RisingEdge(dut.clk)
+        bed.octets.clear()
+        await bed.source.wait()
+        await Timer(1, "us")
+        good = frame(rng, 70)
+        await bed.source.send(GmiiFrame.from_payload(good))
+        await bed.send(good)
+        await bed.until(lambda: bed.received and bed.sink.count() == 2)
+        cut, whole = bed.sent()
+        assert bed.received == [good] and not bed.bad and not bed.dropped
+        assert not cut.check_fcs() and whole.check_fcs() and bytes(whole.get_payload()) == good

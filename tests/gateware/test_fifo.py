@@ -157,6 +157,6 @@ def test_depths_are_checked() -> None:
     with pytest.raises(ValueError, match="at least two places, not 1"):
         FrameFifo(1)
     for block in (AsyncFrameFifo, LossyFrameFifo):
-        for depth in (0, 1, 96):
-            with pytest.raises(ValueError, match=f"must be a power of two, and not {depth}"):
+        for depth in (0, 2, 96):
+            with pytest.raises(ValueError, match=f"must be a power of two from 4 on, and not {depth}"):
                 block(depth, "a", "b")

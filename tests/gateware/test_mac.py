@@ -48,6 +48,14 @@ class MacBench(Bench):
         self._simulator.add_testbench(self.watch.run, background=True)
         self.count(*DROPS)
 
+        async def wake(ctx: Any) -> None:
+            for _ in range(8):  # until the queues are out of their reset
+                await ctx.tick("phy_tx")
+            self.stalls = stalls
+
+        self.stalls = 100
+        self._simulator.add_testbench(wake, background=True)
+
     def show(self, cycles: list[Cycle]) -> None:
         pins = self.dut.pins.phy_rxd, self.dut.pins.phy_rx_dv, self.dut.pins.phy_rx_er
         self.drive(lambda ctx: play(ctx, pins, cycles, "phy_rx"))
@@ -116,9 +124,8 @@ def test_every_wrong_frame_is_counted_by_its_reason_and_the_next_is_taken(phy: s
 
 def test_a_core_that_does_not_take_frames_loses_whole_ones() -> None:
     frames = [bytes([n]) * 60 for n in range(12)]
-    bench = MacBench("gmii", 8e-9, stalls=0, rx_depth=256)
+    bench = MacBench("gmii", 8e-9, stalls=100, rx_depth=256)
     bench.show([IDLE, *(cycle for frame in frames for cycle in shown(PREAMBLE + sealed(frame), 8))])
-    bench.stalls = 100
     got = bench.receive("rx")
 
     async def wake(ctx: Any) -> None:
@@ -172,6 +179,8 @@ def test_a_frame_may_be_late_by_seven_octets(phy: str, period: float, lateness: 
     stream = bench.dut.tx.stream
 
     async def process(ctx: Any) -> None:
+        while bench.stalls:
+            await ctx.tick()
         for n in range(len(FRAME) + 1):
             end = n == len(FRAME)
             ctx.set(stream.payload, {"data": 0 if end else FRAME[n], "end": end, "bad": 0})
@@ -223,8 +232,8 @@ def test_latencies_are_as_stated(phy: str, period: float) -> None:
     note("silent", "phy_rx", pins.phy_rx_dv)
     note("end", "sync", rx.valid & rx.payload.end)
     bench.run(lambda: {"end", "preamble"} <= set(times))
-    assert times["preamble"] - times["taken"] <= 1e9 * 6 * PERIODS[phy] + 1
-    assert times["end"] - times["silent"] <= 1e9 * (2 * PERIODS[phy] + 4 * period) + 1
+    assert times["preamble"] - times["taken"] <= 1e9 * 7 * PERIODS[phy] + 1
+    assert times["end"] - times["silent"] <= 1e9 * (2 * PERIODS[phy] + 5 * period) + 1
 
 
 def test_a_phy_is_held_in_reset_for_as_long_as_asked() -> None:
@@ -244,7 +253,7 @@ def test_a_phy_is_held_in_reset_for_as_long_as_asked() -> None:
 def test_what_cannot_be_is_refused() -> None:
     with pytest.raises(ValueError, match="a PHY is one of mii, gmii, not 'rmii'"):
         Mac("rmii")
-    with pytest.raises(ValueError, match="must be a power of two, and not 1000"):
+    with pytest.raises(ValueError, match="must be a power of two from 4 on, and not 1000"):
         Mac(rx_depth=1000)
     with pytest.raises(ValueError, match="a reset takes at least one cycle, not 0"):
         PhyReset(0)

@@ -16,7 +16,7 @@ from amaranth.lib.wiring import In, flipped
 
 from roslet.gateware.mac import Mac, phy_clock
 
-TESTS = 4
+TESTS = 5
 
 
 class Top(wiring.Component):

@@ -10,9 +10,10 @@ from __future__ import annotations
 from amaranth.hdl import Cat, Module, Mux, Signal, Value
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.cdc import PulseSynchronizer
-from amaranth.lib.fifo import AsyncFIFOBuffered, FIFOInterface, SyncFIFOBuffered
+from amaranth.lib.fifo import SyncFIFOBuffered
 from amaranth.lib.wiring import In, Out
 
+from roslet.gateware.crossing import CrossingQueue
 from roslet.gateware.stream import FrameSignature
 
 _WIDTH = 9
@@ -22,11 +23,11 @@ def _pack(item: data.View) -> Value:
     return Cat(Mux(item.end, item.bad, item.data[0]), item.data[1:], item.end)
 
 
-def _input(m: Module, i: stream.Interface, queue: FIFOInterface) -> None:
+def _input(m: Module, i: stream.Interface, queue: SyncFIFOBuffered | CrossingQueue) -> None:
     m.d.comb += [queue.w_data.eq(_pack(i.payload)), queue.w_en.eq(i.valid), i.ready.eq(queue.w_rdy)]
 
 
-def _output(m: Module, queue: FIFOInterface, o: stream.Interface) -> None:
+def _output(m: Module, queue: SyncFIFOBuffered | CrossingQueue, o: stream.Interface) -> None:
     end = queue.r_data[8]
     m.d.comb += [
         o.payload.data.eq(queue.r_data[:8]),
@@ -34,12 +35,6 @@ def _output(m: Module, queue: FIFOInterface, o: stream.Interface) -> None:
         o.payload.bad.eq(end & queue.r_data[0]),
     ]
     m.d.comb += [o.valid.eq(queue.r_rdy), queue.r_en.eq(o.ready)]
-
-
-def _power_of_two(depth: int) -> int:
-    if depth < 2 or depth & (depth - 1):
-        raise ValueError(f"the depth of a queue between clocks must be a power of two, and not {depth}")
-    return depth
 
 
 class FrameFifo(wiring.Component):
@@ -63,21 +58,19 @@ class FrameFifo(wiring.Component):
 
 
 class AsyncFrameFifo(wiring.Component):
-    """A queue of `depth` items, a power of two, and one in its output register, from the clock domain `i_domain` to
-    `o_domain`: `i` to `o`.
+    """A queue of `depth` items, a power of two, from the clock domain `i_domain` to `o_domain`: `i` to `o`.
 
     Full, it makes `i` wait: nothing is dropped. Throughput one item in a cycle of the slower clock. An item is valid at `o`
-    at most 3 cycles of `o_domain` after the edge of `i_domain` with which it was taken. The reset of `i_domain` empties it.
+    at most 4 cycles of `o_domain` after the edge of `i_domain` with which it was taken. The reset of `i_domain` empties it.
     """
 
     def __init__(self, depth: int, i_domain: str, o_domain: str) -> None:
-        self._depth = _power_of_two(depth)
-        self._domains = {"w_domain": i_domain, "r_domain": o_domain}
+        self._queue = CrossingQueue(_WIDTH, depth, i_domain, o_domain)
         super().__init__({"i": In(FrameSignature()), "o": Out(FrameSignature())})
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        m.submodules.queue = queue = AsyncFIFOBuffered(width=_WIDTH, depth=self._depth + 1, **self._domains)
+        m.submodules.queue = queue = self._queue
         _input(m, self.i.stream, queue)
         _output(m, queue, self.o.stream)
         return m
@@ -93,7 +86,7 @@ class LossyFrameFifo(wiring.Component):
     """
 
     def __init__(self, depth: int, i_domain: str, o_domain: str) -> None:
-        self._depth = _power_of_two(depth)
+        self._queue = CrossingQueue(_WIDTH, depth, i_domain, o_domain)
         self._domains = i_domain, o_domain
         super().__init__({"i": In(FrameSignature()), "o": Out(FrameSignature()), "drop_overflow": Out(1)})
 
@@ -101,9 +94,7 @@ class LossyFrameFifo(wiring.Component):
         m = Module()
         i = self.i.stream
         i_domain, o_domain = self._domains
-        m.submodules.queue = queue = AsyncFIFOBuffered(
-            width=_WIDTH, depth=self._depth + 1, w_domain=i_domain, r_domain=o_domain
-        )
+        m.submodules.queue = queue = self._queue
         m.submodules.lost = lost = PulseSynchronizer(i_domain, o_domain)
         m.d.comb += [i.ready.eq(1), self.drop_overflow.eq(lost.o)]
         _output(m, queue, self.o.stream)

@@ -64,8 +64,8 @@ class Mac(wiring.Component):
 
     For the full rate of the line `sync` needs 12.5 MHz with MII and 125 MHz with GMII; the gap between frames makes up for
     clocks that differ by 100 ppm.
-    Latency: from the edge with which the first octet at `tx` is taken to the preamble's first bits, at most 5 cycles of
-    `phy_tx`; from the first edge without `phy_rx_dv` to the end at `rx`, at most 2 cycles of `phy_rx` and 3 of `sync`.
+    Latency: from the edge with which the first octet at `tx` is taken to the preamble's first bits, at most 6 cycles of
+    `phy_tx`; from the first edge without `phy_rx_dv` to the end at `rx`, at most 2 cycles of `phy_rx` and 4 of `sync`.
     """
 
     def __init__(self, phy: str = "mii", rx_depth: int = 2048, tx_depth: int = 512) -> None:
