@@ -7,7 +7,7 @@ limit.
 from __future__ import annotations
 
 import random
-from collections.abc import Awaitable, Callable, Iterable, Sequence
+from collections.abc import Awaitable, Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from amaranth.hdl import Elaboratable
@@ -25,19 +25,37 @@ class Bad(bytes):
     """A frame that ends badly."""
 
 
+async def taken(ctx: Any, stream: Any) -> None:
+    """Wait until the item at `stream` has been taken. Amaranth's `until` does not stand being left behind by a simulation
+    that ends."""
+    ready = False
+    while not ready:
+        (_, _, ready) = await ctx.tick().sample(stream.ready)
+
+
 class Bench:
     """A block, what is sent to it and what it gave. Ports are found by name: `bench.send("i", frames)`.
 
     `stalls` is how often, of a hundred cycles, a sender has nothing or a receiver is not ready. `STALLS` are worth trying.
+    `clocks` are the periods of domains besides `sync`, of any phase.
     """
 
-    def __init__(self, dut: Elaboratable, stalls: int = 30, seed: int = 0, period: float = 1e-8) -> None:
+    def __init__(
+        self,
+        dut: Elaboratable,
+        stalls: int = 30,
+        seed: int = 0,
+        period: float = 1e-8,
+        clocks: Mapping[str, float] | None = None,
+    ) -> None:
         self.dut: Any = dut
         self.stalls = stalls
         self.random = random.Random(seed)
         self.counts: dict[str, int] = {}
         self._simulator = Simulator(dut)
         self._simulator.add_clock(period)
+        for domain, other in (clocks or {}).items():
+            self._simulator.add_clock(other, phase=other * self.random.random(), domain=domain)
         self._waiting = 0
         self._faults: list[str] = []
         self._received: dict[str, list[tuple[bytes, Any]]] = {}
@@ -67,7 +85,7 @@ class Bench:
                         await ctx.tick()
                     ctx.set(port.stream.payload, item)
                     ctx.set(port.stream.valid, 1)
-                    await ctx.tick().until(port.stream.ready)
+                    await taken(ctx, port.stream)
                     ctx.set(port.stream.valid, 0)
             self._waiting -= 1
 
@@ -121,15 +139,15 @@ class Bench:
 
     def count(self, *names: str) -> None:
         """Count the cycles in which outputs are high: `bench.counts[name]`."""
-        for name in names:
-            self.counts[name] = 0
-            self._count(name, self._port(name))
+        self.counts.update(dict.fromkeys(names, 0))
+        signals = [self._port(name) for name in names]
 
-    def _count(self, name: str, signal: Any) -> None:
         async def process(ctx: Any) -> None:
             while True:
-                (_, _, high) = await ctx.tick().sample(signal)
-                self.counts[name] += int(bool(high))
+                (_, _, *high) = await ctx.tick().sample(*signals)
+                if any(high):
+                    for name, one in zip(names, high, strict=True):
+                        self.counts[name] += int(bool(one))
 
         self._simulator.add_testbench(process, background=True)
 

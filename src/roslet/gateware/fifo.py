@@ -1,0 +1,123 @@
+"""Queues of frames, in one clock domain and between two. What they give comes from registers.
+
+A queue keeps items, not frames: what goes in comes out as soon as it can, so a frame's beginning leaves before its end has
+come. An item takes 9 bits of memory, the width of common block RAMs: at an end the lowest bit of `data` is not kept, as
+`bad` has its place. The others pass, and can say why an end is bad.
+"""
+
+from __future__ import annotations
+
+from amaranth.hdl import Cat, Module, Mux, Signal, Value
+from amaranth.lib import data, stream, wiring
+from amaranth.lib.cdc import PulseSynchronizer
+from amaranth.lib.fifo import SyncFIFOBuffered
+from amaranth.lib.wiring import In, Out
+
+from roslet.gateware.crossing import CrossingQueue
+from roslet.gateware.stream import FrameSignature
+
+_WIDTH = 9
+
+
+def _pack(item: data.View) -> Value:
+    return Cat(Mux(item.end, item.bad, item.data[0]), item.data[1:], item.end)
+
+
+def _input(m: Module, i: stream.Interface, queue: SyncFIFOBuffered | CrossingQueue) -> None:
+    m.d.comb += [queue.w_data.eq(_pack(i.payload)), queue.w_en.eq(i.valid), i.ready.eq(queue.w_rdy)]
+
+
+def _output(m: Module, queue: SyncFIFOBuffered | CrossingQueue, o: stream.Interface) -> None:
+    end = queue.r_data[8]
+    m.d.comb += [
+        o.payload.data.eq(queue.r_data[:8]),
+        o.payload.end.eq(end),
+        o.payload.bad.eq(end & queue.r_data[0]),
+    ]
+    m.d.comb += [o.valid.eq(queue.r_rdy), queue.r_en.eq(o.ready)]
+
+
+class FrameFifo(wiring.Component):
+    """A queue of `depth` items, and one in its output register, within `sync`: `i` to `o`.
+
+    Full, it makes `i` wait: nothing is dropped. Throughput one item a cycle; latency 2 cycles.
+    """
+
+    def __init__(self, depth: int) -> None:
+        if depth < 2:
+            raise ValueError(f"a queue of frames has at least two places, not {depth}")
+        self._depth = depth
+        super().__init__({"i": In(FrameSignature()), "o": Out(FrameSignature())})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.submodules.queue = queue = SyncFIFOBuffered(width=_WIDTH, depth=self._depth + 1)
+        _input(m, self.i.stream, queue)
+        _output(m, queue, self.o.stream)
+        return m
+
+
+class AsyncFrameFifo(wiring.Component):
+    """A queue of `depth` items, a power of two, from the clock domain `i_domain` to `o_domain`: `i` to `o`.
+
+    Full, it makes `i` wait: nothing is dropped. Throughput one item in a cycle of the slower clock. An item is valid at `o`
+    at most 4 cycles of `o_domain` after the edge of `i_domain` with which it was taken. The reset of `i_domain` empties it.
+    """
+
+    def __init__(self, depth: int, i_domain: str, o_domain: str) -> None:
+        self._queue = CrossingQueue(_WIDTH, depth, i_domain, o_domain)
+        super().__init__({"i": In(FrameSignature()), "o": Out(FrameSignature())})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.submodules.queue = queue = self._queue
+        _input(m, self.i.stream, queue)
+        _output(m, queue, self.o.stream)
+        return m
+
+
+class LossyFrameFifo(wiring.Component):
+    """`AsyncFrameFifo` for a source that cannot wait: `i.stream.ready` is always high.
+
+    What comes while the queue is full is lost, and with it the rest of its frame. Where the queue has some of that frame,
+    its bad end follows as soon as there is room, and whatever comes before that is lost as well; the next frame is whole
+    again. `drop_overflow` is high for one cycle of `o_domain` for each frame of which something was lost: a cycle of
+    `o_domain` must be shorter than two frames' ends are apart.
+    """
+
+    def __init__(self, depth: int, i_domain: str, o_domain: str) -> None:
+        self._queue = CrossingQueue(_WIDTH, depth, i_domain, o_domain)
+        self._domains = i_domain, o_domain
+        super().__init__({"i": In(FrameSignature()), "o": Out(FrameSignature()), "drop_overflow": Out(1)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        i = self.i.stream
+        i_domain, o_domain = self._domains
+        m.submodules.queue = queue = self._queue
+        m.submodules.lost = lost = PulseSynchronizer(i_domain, o_domain)
+        m.d.comb += [i.ready.eq(1), self.drop_overflow.eq(lost.o)]
+        _output(m, queue, self.o.stream)
+
+        begun = Signal()  # the queue has some of the frame that is passing
+        owed = Signal()  # the queue has some of a frame whose bad end did not fit
+        m.d.comb += queue.w_data.eq(_pack(i.payload))
+        with m.If(owed):
+            m.d.comb += [queue.w_data.eq(0b1_0000_0001), queue.w_en.eq(1)]
+            with m.If(queue.w_rdy):
+                m.d[i_domain] += owed.eq(0)
+        with m.FSM(domain=i_domain):
+            with m.State("PASS"), m.If(i.valid):
+                with m.If(queue.w_rdy & ~owed):
+                    m.d.comb += queue.w_en.eq(1)
+                    m.d[i_domain] += begun.eq(~i.payload.end)
+                with m.Else():
+                    m.d.comb += lost.i.eq(1)
+                    m.d[i_domain] += begun.eq(0)
+                    with m.If(begun):
+                        m.d[i_domain] += owed.eq(1)
+                    with m.If(~i.payload.end):
+                        m.next = "DROP"
+            with m.State("DROP"), m.If(i.valid & i.payload.end):
+                m.next = "PASS"
+        return m
