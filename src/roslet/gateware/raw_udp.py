@@ -154,9 +154,9 @@ class RawUdpTx(wiring.Component):
     hardware address; `o`, the data of the datagram.
 
     The memory is read while `grant` is low, and `grant` rises in the cycle after the end of the datagram has been taken.
-    From `rel` to the first item of `o` it takes 9 cycles and one for each word of data, or until the address is found, for
-    which it asks again and again from 6 cycles after `rel` on; then an octet goes out each cycle. Holds one word and what is
-    beside the datagram.
+    From `rel` to the first item of `o` it takes 9 cycles and one for each whole word of data, or until the address is found,
+    for which it asks again and again from 6 cycles after `rel` on; then an octet goes out each cycle. Holds one word, and
+    what is beside the datagram.
 
     Dropped whole, whereupon `grant` rises: `drop_oversize`, the length is more than `limit` octets (244 for the memory of
     the manual); `drop_unresolved`, nobody answers for the address.
