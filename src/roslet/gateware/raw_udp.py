@@ -220,7 +220,7 @@ class RawUdpTx(wiring.Component):
         with m.FSM() as fsm:
             m.d.comb += [self.grant.eq(fsm.ongoing("IDLE")), self.ce.eq(~fsm.ongoing("IDLE"))]
             with m.State("IDLE"):
-                m.d.sync += [self.addr.eq(0), at.eq(0), found.eq(0)]
+                m.d.sync += [self.addr.eq(0), at.eq(0)]
                 with m.If(self.rel):
                     m.next = "READ"
             with m.State("READ"):
