@@ -10,7 +10,7 @@ import random
 from collections.abc import Awaitable, Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from amaranth.hdl import Elaboratable
+from amaranth.hdl import Elaboratable, Module, Signal
 from amaranth.sim import Simulator
 
 CYCLES = 20_000
@@ -52,7 +52,10 @@ class Bench:
         self.stalls = stalls
         self.random = random.Random(seed)
         self.counts: dict[str, int] = {}
-        self._simulator = Simulator(dut)
+        top = Module()
+        top.submodules.dut = dut
+        top.d.sync += Signal().eq(1)  # so that a block without registers can be tried by the clock, too
+        self._simulator = Simulator(top)
         self._simulator.add_clock(period)
         for domain, other in (clocks or {}).items():
             self._simulator.add_clock(other, phase=other * self.random.random(), domain=domain)

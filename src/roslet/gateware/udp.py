@@ -1,0 +1,274 @@
+"""UDP, received and sent. RFC 768.
+
+The checksum runs over a pseudo-header (addresses, protocol, length), the header and the data. It is summed here octet by
+octet in two columns, one of even octets and one of odd: the carry out of one belongs to the other, whose turn comes next, so
+that eight bits of adder do for sixteen of sum.
+"""
+
+from __future__ import annotations
+
+from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
+from amaranth.lib import data, wiring
+from amaranth.lib.wiring import In, Out
+
+from roslet.gateware.meta import ADDRESSES, IPV4_RX, IPV4_TX, UDP_RX, UDP_TX
+from roslet.gateware.stream import FrameSignature
+from roslet.wire.net import ipv4, udp
+
+_NUMBERS = [field for field in udp.FIELDS if field.name != "checksum"]
+"""The header's fields before the checksum: two ports and the length, in the order of the wire."""
+
+
+def _add(left: Value, right: Value, carry: Value) -> Value:
+    """The sum with a carry in, and the carry out above it; as one adder, which three summands would not be."""
+    return (Cat(C(1, 1), left) + Cat(carry, right))[1:]
+
+
+class UdpRx(wiring.Component):
+    """Takes the UDP header off each datagram, and judges it.
+
+    Ports: `i`, what IPv4 datagrams of protocol UDP carry; `o`, the data of UDP datagrams.
+
+    Throughput one octet a cycle: `i` waits only for `o`. The eight octets of the header give nothing; data pass without a
+    register, in the cycle in which they come. Octets beyond the length in the header are taken and give nothing. Holds the
+    numbers of the header and the sum.
+
+    A bad end is passed on, as a bad end. So is a good end where
+
+    - `drop_length`: fewer octets came than the header's length says,
+    - `drop_checksum`: there is a checksum (it is not zero) and it is wrong;
+
+    a datagram that ends within its header, or whose length is less than the header's, gives nothing at all, and is counted
+    by `drop_length` if its end is good.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(
+            {
+                "i": In(FrameSignature(IPV4_RX)),
+                "o": Out(FrameSignature(UDP_RX)),
+                "drop_length": Out(1),
+                "drop_checksum": Out(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        i, o = self.i.stream, self.o.stream
+        octet = i.payload.data
+        taken = Signal()  # an octet of the header, or of data within the length
+        ended = Signal()
+        m.d.comb += ended.eq(i.valid & i.ready & i.payload.end)
+
+        # The last octet shifted in is the lowest, so the first field is the highest.
+        numbers = Signal(data.StructLayout({field.name: field.bits for field in reversed(_NUMBERS)}))
+        at = Signal(range(udp.SIZE))
+        length = Signal(16)
+        m.d.comb += length.eq(Cat(numbers.length[:3], numbers.length[3:] - 1))  # less udp.SIZE, 8
+        count = Signal(16)
+        full = Signal()
+        m.d.comb += full.eq(count == length)
+
+        in_header = Signal()
+        any_checksum = Signal()
+        right = self._sum(m, octet, taken, ended, in_header, at, count[0])
+
+        m.d.comb += [
+            self.o.meta.mac.eq(self.i.meta.mac),
+            self.o.meta.source.eq(self.i.meta.source),
+            self.o.meta.destination.eq(self.i.meta.destination),
+            self.o.meta.group.eq(self.i.meta.group),
+            self.o.meta.source_port.eq(numbers.source_port),
+            self.o.meta.destination_port.eq(numbers.destination_port),
+            self.o.meta.length.eq(length),
+            o.payload.data.eq(octet),
+            o.payload.end.eq(i.payload.end),
+        ]
+        checksum = next(field.offset for field in udp.FIELDS if field.name == "checksum")
+        with m.FSM():
+            with m.State("HEADER"):
+                m.d.comb += [i.ready.eq(1), in_header.eq(1), taken.eq(i.valid & ~i.payload.end)]
+                m.d.comb += self.drop_length.eq(ended & ~i.payload.bad)
+                with m.If(taken):
+                    m.d.sync += at.eq(at + 1)
+                    with m.If(at < checksum):
+                        m.d.sync += numbers.eq(Cat(octet, numbers))
+                    with m.Elif(octet != 0):
+                        m.d.sync += any_checksum.eq(1)
+                    with m.If(at == udp.SIZE - 1):
+                        m.next = "DATA"
+                        with m.If(numbers.length[3:] == 0):
+                            m.next = "DROP"
+            with m.State("DATA"):
+                m.d.comb += taken.eq(i.valid & i.ready & ~i.payload.end & ~full)
+                with m.If(i.payload.end):
+                    wrong = any_checksum & ~right
+                    m.d.comb += [
+                        o.valid.eq(i.valid),
+                        i.ready.eq(o.ready),
+                        o.payload.bad.eq(i.payload.bad | ~full | wrong),
+                        self.drop_length.eq(ended & ~i.payload.bad & ~full),
+                        self.drop_checksum.eq(ended & ~i.payload.bad & full & wrong),
+                    ]
+                with m.Else():
+                    m.d.comb += [o.valid.eq(i.valid & ~full), i.ready.eq(o.ready | full)]
+                with m.If(taken):
+                    m.d.sync += count.eq(count + 1)
+                with m.If(ended):
+                    m.next = "HEADER"
+            with m.State("DROP"):
+                m.d.comb += [i.ready.eq(1), self.drop_length.eq(ended & ~i.payload.bad)]
+                with m.If(ended):
+                    m.next = "HEADER"
+        with m.If(ended):
+            m.d.sync += [at.eq(0), count.eq(0), any_checksum.eq(0)]
+        return m
+
+    def _sum(
+        self, m: Module, octet: Value, taken: Value, ended: Value, in_header: Value, at: Value, odd: Value
+    ) -> Value:
+        """Whether the sum over pseudo-header, header and data taken is right.
+
+        Beside each octet of the header goes one of the addresses. The length of the pseudo-header is the number of octets
+        if the datagram is right, so it need not wait to be known: it is counted, 1 an octet of data, in the odd column.
+        """
+        column, other = Signal(8), Signal(8, init=ipv4.UDP + udp.SIZE)  # even, odd at the beginning
+        carry, carry_beside = Signal(), Signal()
+        addresses = Cat(self.i.meta.source, self.i.meta.destination)
+        beside = Mux(in_header, addresses.word_select(at, 8), Cat(C(0, 1), odd))
+        with_beside = _add(octet, beside, carry_beside)
+        total = _add(column, with_beside[:8], carry)
+        with m.If(ended):
+            m.d.sync += [
+                signal.eq(Value.cast(signal.init)) for signal in (column, other, carry, carry_beside)
+            ]
+        with m.Elif(taken):
+            m.d.sync += [column.eq(other), Cat(other, carry).eq(total), carry_beside.eq(with_beside[8])]
+        # All ones, once the carries have been added, and the 1 for an odd last octet, whose column's turn it is.
+        right: Value = (other == 0xFF) & (column[2:] == 0x3F)
+        return right & ((column[:2] + carry + carry_beside + odd)[:3] == 3)
+
+
+class UdpTx(wiring.Component):
+    """Puts a UDP header before each datagram.
+
+    Ports: `i`, the data of UDP datagrams; `o`, what IPv4 datagrams carry; `addresses`, of which `ip` goes into the checksum.
+
+    A checksum is always sent, never zero. The header begins 18 cycles after the first item of `i` is valid, which then waits
+    until the header is out; the data pass without a register, one octet a cycle. `i.meta.length` and `i.meta.sum` are taken
+    as they are: who sends octets that they do not fit sends a datagram that its receiver will drop. A frame whose end is bad
+    has a bad end. Holds nothing but the sum; drops nothing.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(
+            {
+                "i": In(FrameSignature(UDP_TX)),
+                "o": Out(FrameSignature(IPV4_TX)),
+                "addresses": In(ADDRESSES),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        i, o = self.i.stream, self.o.stream
+        meta = self.i.meta
+        length = Cat(meta.length[:3], meta.length[3:] + 1)  # and udp.SIZE, 8
+        numbers = {**{name: meta[name] for name in ("source_port", "destination_port")}, "length": length}
+        words = [(word[8:16], word[:8]) for word in (meta.sum, *(numbers[field.name] for field in _NUMBERS))]
+        octets = Cat(self.addresses.ip, meta.destination, *(octet for word in words for octet in word))
+        assert len(octets) == 8 * 16
+        header = 16 - udp.SIZE + 2  # the numbers are last
+        length_at = 16 - 2
+        at = Signal(4)
+        octet = octets.word_select(at, 8)
+
+        # Complements are summed, beginning with that of the protocol: so the sum is the checksum. Not being all zeros at the
+        # beginning it never becomes so, and a checksum of zero is sent as all ones by itself.
+        column, other = Signal(8, init=0xFF), Signal(8, init=~ipv4.UDP & 0xFF)
+        carry = Signal()
+        step, adding = Signal(), Signal()
+        total = _add(column, Mux(adding, ~octet, 0), carry)
+        with m.If(step):
+            m.d.sync += [column.eq(other), Cat(other, carry).eq(total)]
+
+        m.d.comb += [
+            self.o.meta.mac.eq(meta.mac),
+            self.o.meta.destination.eq(meta.destination),
+            self.o.meta.protocol.eq(ipv4.UDP),
+            self.o.meta.length.eq(length),
+        ]
+        with m.FSM():
+            with m.State("SUM"):
+                m.d.comb += [step.eq(i.valid), adding.eq(1)]
+                with m.If(i.valid):
+                    m.d.sync += at.eq(at + 1)
+                    with m.If(at == 15):
+                        m.d.sync += at.eq(length_at)
+                        m.next = "LENGTH AGAIN"
+            with m.State("LENGTH AGAIN"):
+                m.d.comb += [step.eq(1), adding.eq(1)]
+                m.d.sync += at.eq(at + 1)
+                with m.If(at == 15):
+                    m.d.sync += at.eq(header)
+                    m.next = "NUMBERS"
+            with m.State("NUMBERS"):  # and the carries come to rest
+                m.d.comb += [o.valid.eq(1), o.payload.data.eq(octet), step.eq(o.ready)]
+                with m.If(o.ready):
+                    m.d.sync += at.eq(at + 1)
+                    with m.If(at == 15):
+                        m.next = "CHECKSUM"
+            with m.State("CHECKSUM"):
+                m.d.comb += [o.valid.eq(1), o.payload.data.eq(column), step.eq(o.ready)]
+                with m.If(o.ready):
+                    m.d.sync += at.eq(at + 1)
+                    with m.If(at == 1):
+                        m.next = "DATA"
+            with m.State("DATA"):
+                m.d.comb += [o.payload.eq(i.payload), o.valid.eq(i.valid), i.ready.eq(o.ready)]
+                m.d.sync += [
+                    at.eq(0),
+                    *(signal.eq(Value.cast(signal.init)) for signal in (column, other, carry)),
+                ]
+                with m.If(i.valid & o.ready & i.payload.end):
+                    m.next = "SUM"
+        return m
+
+
+class PortSwitch(wiring.Component):
+    """Gives each datagram to the output of its destination port.
+
+    Ports: `i`; `port0` .. `port{count-1}`, steady port numbers; `o0` .. `o{count-1}`. Of equal ports the first gets all.
+
+    Throughput one octet a cycle, without a register and without latency. A datagram to no such port is dropped whole, with
+    no output waited for, and counted by `drop_port` if its end is good.
+    """
+
+    def __init__(self, count: int) -> None:
+        if count < 1:
+            raise ValueError(f"a switch has at least one output, not {count}")
+        self._count = count
+        super().__init__(
+            {
+                "i": In(FrameSignature(UDP_RX)),
+                **{f"port{n}": In(16) for n in range(count)},
+                **{f"o{n}": Out(FrameSignature(UDP_RX)) for n in range(count)},
+                "drop_port": Out(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        i = self.i.stream
+        for n in range(self._count):
+            o = getattr(self, f"o{n}")
+            m.d.comb += [o.stream.payload.eq(i.payload), o.meta.eq(self.i.meta)]
+        with m.If(self.i.meta.destination_port == self.port0):
+            m.d.comb += [self.o0.stream.valid.eq(i.valid), i.ready.eq(self.o0.stream.ready)]
+        for n in range(1, self._count):
+            o = getattr(self, f"o{n}")
+            with m.Elif(self.i.meta.destination_port == getattr(self, f"port{n}")):
+                m.d.comb += [o.stream.valid.eq(i.valid), i.ready.eq(o.stream.ready)]
+        with m.Else():  # DROP, as long as the port is what it is
+            m.d.comb += [i.ready.eq(1), self.drop_port.eq(i.valid & i.payload.end & ~i.payload.bad)]
+        return m
