@@ -32,3 +32,35 @@ class OctetSum(wiring.Component):
             word = Mux(odd, self.data, self.data << 8)
             m.d.sync += [self.sum.eq(add(self.sum, word)), odd.eq(~odd)]
         return m
+
+
+class SerialSum(wiring.Component):
+    """The same sum, one octet wide, for who only compares it or spells it in order: a third of the logic.
+
+    The two halves of the sum take turns at one adder of 8 bits. A carry out of either belongs to the other, which is next.
+
+    Ports: `clear`, `add` and `data` as of OctetSum. `result`, in that same cycle, is the half that `data` goes to, with it
+    in. `right`: what was taken until the cycle before sums to 0xFFFF, be it odd or even in length.
+
+    To spell the sum of an even number of octets, add two octets of 0: they give its halves, the upper first, where the last
+    octet before them was not 0xFF (else the lower may carry into the upper, which is out).
+    """
+
+    def __init__(self) -> None:
+        super().__init__({"clear": In(1), "add": In(1), "data": In(8), "result": Out(8), "right": Out(1)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        turn, other = Signal(8), Signal(8)
+        carry = Signal()
+        total = Signal(9)
+        m.d.comb += [
+            total.eq(turn + self.data + carry),
+            self.result.eq(total[:8]),
+            self.right.eq(other.all() & turn[1:].all() & (turn[0] ^ carry)),
+        ]
+        with m.If(self.clear):
+            m.d.sync += [turn.eq(0), other.eq(0), carry.eq(0)]
+        with m.Elif(self.add):
+            m.d.sync += [turn.eq(other), other.eq(total[:8]), carry.eq(total[8])]
+        return m

@@ -1,0 +1,165 @@
+"""Scapy takes the packets apart, and puts fragments together."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import pytest
+from scapy.layers.inet import IP, defragment
+
+from gateware.frames import STALLS, Bad, Bench
+from gateware.internet import OWN, PEER, PEER_MAC, fields, mac, noise, octets, own_addresses
+from roslet.gateware.ipv4_tx import Ipv4Tx
+
+
+def meta(length: int, destination: str = PEER, protocol: int = 17) -> dict[str, int]:
+    return {"mac": mac(PEER_MAC), "destination": octets(destination), "protocol": protocol, "length": length}
+
+
+def packets(
+    block: Ipv4Tx, payloads: list[bytes], metas: list[dict[str, int]], count: int, stalls: int = 0
+) -> list[bytes]:
+    """What the block makes of payloads: `count` packets, each with the right meta."""
+    bench = Bench(block, stalls)
+    bench.drive(own_addresses(bench.dut))
+    bench.send("i", payloads, metas)
+    got = bench.receive("o")
+    bench.run(lambda: len(got) >= count, cycles=40_000)
+    assert len(got) == count
+    assert all(fields(beside) == {"destination": mac(PEER_MAC), "type": 0x0800} for _, beside in got)
+    return [packet for packet, _ in got]
+
+
+def judged(packet: bytes, identification: int, **expected: Any) -> bytes:
+    """The payload of a packet that scapy would have made just so."""
+    payload = packet[20:]
+    assert packet[:20] == bytes(IP(src=OWN, id=identification, **expected, len=len(packet)))
+    return payload
+
+
+@pytest.mark.parametrize("stalls", STALLS)
+def test_each_payload_gets_a_header_and_each_header_the_next_identification(stalls: int) -> None:
+    rng = random.Random(1)
+    sizes = [0, 1, 2, 26, 100, 3, 8]
+    peers = [
+        f"{rng.randrange(1, 224)}.{rng.randrange(256)}.{rng.randrange(256)}.{rng.randrange(256)}"
+        for _ in sizes
+    ]
+    protocols = [1, 2, 17, 0, 254, 6, 89]
+    metas = [meta(size, peer, number) for size, peer, number in zip(sizes, peers, protocols, strict=True)]
+    got = packets(Ipv4Tx(), [noise(size) for size in sizes], metas, len(sizes), stalls)
+    for n, packet in enumerate(got):
+        assert judged(packet, n, dst=peers[n], proto=protocols[n], ttl=64) == noise(sizes[n])
+
+
+def test_checksums_of_many_headers_are_right() -> None:
+    rng = random.Random(2)
+    peers = [
+        ".".join(str(rng.choice([0, 1, 127, 254, 255, rng.randrange(256)])) for _ in range(4))
+        for _ in range(150)
+    ]
+    metas = [meta(1, peer, rng.randrange(255)) for peer in peers]
+    got = packets(Ipv4Tx(max_length=1480), [b"x"] * len(peers), metas, len(peers))
+    for n, packet in enumerate(got):
+        assert judged(packet, n, dst=peers[n], proto=metas[n]["protocol"], ttl=64) == b"x"
+
+
+@pytest.mark.parametrize("stalls", [0, 30])
+def test_what_is_longer_than_the_mtu_is_cut_into_fragments_of_one_identification(stalls: int) -> None:
+    sizes = [
+        80,
+        86,
+        87,
+        160,
+        166,
+        167,
+        500,
+        5,
+    ]  # 86 fit into a packet, 80 into a fragment that is not the last
+    counts = [1, 1, 2, 2, 2, 3, 7, 1]
+    block = Ipv4Tx(mtu=106, ttl=9)
+    got = packets(block, [noise(size) for size in sizes], [meta(size) for size in sizes], sum(counts), stalls)
+    for n, (size, count) in enumerate(zip(sizes, counts, strict=True)):
+        mine = [IP(packet) for packet in got if IP(packet).id == n]
+        assert len(mine) == count
+        for k, packet in enumerate(mine):
+            judged(bytes(packet), n, dst=PEER, proto=17, ttl=9, frag=10 * k, flags=int(k < count - 1))
+            assert len(packet) <= 106
+        whole, _, _ = ([mine[0]], 0, 0) if count == 1 else defragment(mine)
+        assert bytes(whole[0].payload) == noise(size)
+
+
+def test_an_ethernet_carries_1480_octets_whole_and_one_more_in_two() -> None:
+    got = packets(Ipv4Tx(), [noise(1480), noise(1481), noise(2960)], [meta(1480), meta(1481), meta(2960)], 5)
+    assert [(len(packet), IP(packet).id, IP(packet).frag, int(IP(packet).flags)) for packet in got] == [
+        (1500, 0, 0, 0),
+        (1500, 1, 0, 1),
+        (21, 1, 185, 0),
+        (1500, 2, 0, 1),
+        (1500, 2, 185, 0),
+    ]
+    assert got[3][20:] + got[4][20:] == noise(2960)
+
+
+def test_offsets_count_in_units_of_8_octets() -> None:
+    got = packets(Ipv4Tx(mtu=1500), [noise(5000)], [meta(5000)], 4)
+    assert [IP(packet).frag for packet in got] == [0, 185, 370, 555]
+    assert b"".join(packet[20:] for packet in got) == noise(5000)
+
+
+@pytest.mark.parametrize("block", [Ipv4Tx(mtu=106), Ipv4Tx(max_length=1480)])
+def test_a_payload_that_ends_badly_or_is_not_as_long_as_was_said_ends_badly(block: Ipv4Tx) -> None:
+    payloads = [noise(9), Bad(noise(9)), Bad(), noise(8), noise(10), b"", noise(9)]
+    got = packets(block, payloads, [meta(9)] * 7, 7)
+    assert [type(packet) for packet in got] == [bytes, Bad, Bad, Bad, Bad, Bad, bytes]
+    assert [packet[20:] for packet in got] == payloads
+    assert judged(got[-1], 6, dst=PEER, proto=17, ttl=64) == noise(9)
+
+
+def test_of_a_datagram_that_ends_badly_the_last_fragment_does() -> None:
+    got = packets(
+        Ipv4Tx(mtu=106),
+        [Bad(noise(100)), Bad(noise(80)), noise(5)],
+        [meta(200), meta(200), meta(5)],
+        5,
+    )
+    assert [(len(packet), type(packet)) for packet in got] == [
+        (100, bytes), (40, Bad), (100, bytes), (20, Bad), (25, bytes),
+    ]  # fmt: skip
+
+
+def test_the_first_octet_comes_after_8_cycles_and_a_packet_costs_28_and_its_octets() -> None:
+    bench = Bench(Ipv4Tx(), stalls=0)
+    bench.drive(own_addresses(bench.dut))
+    bench.send("i", [bytes(64)] * 10, [meta(64)] * 10)
+    got = bench.receive("o")
+    first: list[int] = []
+
+    async def watch(ctx: Any) -> None:
+        waited = 0
+        while not ctx.get(bench.dut.i.stream.valid):
+            await ctx.tick()
+        while not ctx.get(bench.dut.o.stream.valid):
+            await ctx.tick()
+            waited += 1
+        first.append(waited)
+
+    bench.drive(watch)
+    bench.run(lambda: len(got) == 10, cycles=10 * (28 + 65) + 5)
+    assert first == [8]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ({"ttl": 0}, "a time to live is 1 to 255, not 0"),
+        ({"ttl": 256}, "a time to live"),
+        ({"mtu": 67}, r"an MTU is 68 \(RFC 791\) to 65535, not 67"),
+        ({"max_length": 0}, "a payload has 1 to 65515 octets"),
+        ({"max_length": 65516}, "a payload has 1 to 65515 octets"),
+    ],
+)
+def test_arguments_that_cannot_be_are_refused(arguments: dict[str, int], sentence: str) -> None:
+    with pytest.raises(ValueError, match=sentence):
+        Ipv4Tx(**arguments)
