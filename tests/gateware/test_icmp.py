@@ -120,7 +120,7 @@ def test_what_is_no_request_to_us_is_dropped_for_its_reason(stalls: int) -> None
         ("drop_type", bytes(ICMP(type="dest-unreach", code=3) / Raw(noise(20))), 0),
         ("drop_type", request(noise(20), code=1), 0),
         ("drop_type", b"\0", 0),
-        ("drop_type", b"\x08\x01", 0),
+        ("drop_length", b"\x08\x01", 0),
         ("drop_type", bytes(ICMP(type="echo-reply") / Raw(noise(20))), 1),
         ("drop_group", good, 1),
         *(("drop_length", good[:size], 0) for size in range(2, 8)),
