@@ -36,3 +36,22 @@ def configure(bench: Bench, mask: bytes = MASK, gateway: bytes = GATEWAY, **inpu
             ctx.set(getattr(bench.dut, name), value)
 
     bench.drive(process)
+
+
+def watch_pauses(bench: Bench, name: str = "o") -> list[int]:
+    """Note, in the list that is returned, each cycle within a frame in which a port has nothing to give."""
+    stream = getattr(bench.dut, name).stream
+    pauses: list[int] = []
+
+    async def process(ctx: Any) -> None:
+        within, cycle = False, 0
+        while True:
+            _, _, valid, ready, end = await ctx.tick().sample(stream.valid, stream.ready, stream.payload.end)
+            cycle += 1
+            if within and not valid:
+                pauses.append(cycle)
+            if valid and ready:
+                within = not end
+
+    bench.watch(process)
+    return pauses

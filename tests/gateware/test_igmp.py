@@ -11,7 +11,7 @@ from scapy.contrib.igmpv3 import IGMPv3, IGMPv3mq  # type: ignore[attr-defined]
 from scapy.layers import inet
 
 from gateware.frames import STALLS, Bad, Bench
-from gateware.network import IP, configure, number, octets
+from gateware.network import IP, configure, number, octets, watch_pauses
 from roslet.gateware.igmp import Igmp
 from roslet.gateware.igmp_rx import IgmpRx
 
@@ -83,6 +83,7 @@ class Host:
 @pytest.mark.parametrize("stalls", STALLS)
 def test_a_group_is_reported_at_once_and_twice_again_within_ten_seconds(stalls: int) -> None:
     host = Host(stalls=stalls)
+    pauses = watch_pauses(host.bench)
     times: list[int] = []
 
     async def process(ctx: Any) -> None:
@@ -92,6 +93,7 @@ def test_a_group_is_reported_at_once_and_twice_again_within_ten_seconds(stalls: 
         await ctx.tick().repeat(2000)
 
     host.run(process)
+    assert pauses == []
     assert len(set(times)) == 3
     assert [frame for frame, _ in host.sent] == [report(DISCOVERY)] * 3
     for frame, meta in host.sent:

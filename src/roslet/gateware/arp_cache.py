@@ -36,7 +36,7 @@ class ArpCache(wiring.Component):
     again, so that whoever asks now and then gets to know; after that a question begins anew. Otherwise nothing is known yet:
     a request is under way, or `resolving` others are.
     An answer takes 4 cycles where it is computed, up to 2**width + 5 otherwise, and while the cache is busy as much again
-    and 3 more.
+    and 5 more.
 
     **Requests**: `ask` is high for one cycle when a request for `ask_ip` shall be sent; never while `ask_ready` is low. The
     first is sent 3 cycles after the answer to the question, or else when the entry is visited next.
