@@ -164,6 +164,10 @@ class Bench:
 
         self._simulator.add_testbench(wrapped, background=True)
 
+    def watch(self, process: Callable[[Any], Awaitable[None]]) -> None:
+        """A testbench of the test's own, which goes on until the simulation ends."""
+        self._simulator.add_testbench(process, background=True)
+
     def run(self, until: Callable[[], bool] | None = None, cycles: int = CYCLES, rest: int = 50) -> None:
         """Simulate until all is sent, and `until()` is so, and `rest` cycles more. Fails where that takes more than
         `cycles`, or where a rule of streams was broken."""

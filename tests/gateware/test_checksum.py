@@ -11,8 +11,7 @@ from scapy.utils import checksum
 from gateware.frames import Bench
 from roslet.gateware.checksum import OctetSum, SerialSum
 
-
-@pytest.mark.parametrize(
+SUMS = pytest.mark.parametrize(
     ("octets", "total"),
     [
         (bytes.fromhex("0001 f203 f4f5 f6f7"), 0xDDF2),
@@ -24,6 +23,9 @@ from roslet.gateware.checksum import OctetSum, SerialSum
         (bytes.fromhex("4500 0073 0000 4000 4011 b861 c0a8 0001 c0a8 00c7"), 0xFFFF),
     ],
 )
+
+
+@SUMS
 def test_a_sum_is_that_of_the_words(octets: bytes, total: int) -> None:
     bench = Bench(OctetSum())
     sums = []
@@ -88,3 +90,58 @@ def test_a_serial_sum_is_right_where_the_sum_is_and_spells_what_makes_it_so() ->
         assert after == (any(octets) or total == 0xFFFF), octets
         if len(octets) % 2 == 0 and octets[-1] != 0xFF:
             assert spelled == total.to_bytes(2, "big"), octets
+
+
+@SUMS
+def test_a_serial_sum_is_that_of_the_words_once_it_has_settled_and_right_at_once(
+    octets: bytes, total: int
+) -> None:
+    bench = Bench(SerialSum())
+    sums = []
+
+    async def process(ctx: Any) -> None:
+        for _ in range(2):
+            for octet in octets:
+                ctx.set(bench.dut.data, octet)
+                ctx.set(bench.dut.add, 1)
+                await ctx.tick()
+            right = ctx.get(bench.dut.right)
+            ctx.set(bench.dut.data, 0)
+            await ctx.tick().repeat(SerialSum.SETTLE + len(octets) % 2)
+            sums.append((ctx.get(bench.dut.sum), right))
+            ctx.set(bench.dut.clear, 1)
+            await ctx.tick()
+            ctx.set(bench.dut.clear, 0)
+            ctx.set(bench.dut.add, 0)
+
+    bench.drive(process)
+    bench.run()
+    assert sums == [(total, int(total == 0xFFFF))] * 2
+
+
+def test_a_serial_sum_of_any_octets_is_the_remainder_by_0xffff() -> None:
+    bench = Bench(SerialSum())
+    numbers = [[bench.random.choice((0, 1, 0xFE, 0xFF)) for _ in range(size)] for size in range(1, 40)]
+    wrong = []
+
+    async def process(ctx: Any) -> None:
+        for octets in numbers:
+            for octet in octets:
+                ctx.set(bench.dut.data, octet)
+                ctx.set(bench.dut.add, 1)
+                await ctx.tick()
+            data = bytes(octets) + bytes(len(octets) % 2)
+            total = int.from_bytes(data, "big") % 0xFFFF or (0xFFFF if any(data) else 0)
+            right = ctx.get(bench.dut.right)
+            ctx.set(bench.dut.data, 0)
+            await ctx.tick().repeat(SerialSum.SETTLE + len(octets) % 2)
+            if (ctx.get(bench.dut.sum), right) != (total, int(total == 0xFFFF)):
+                wrong.append((octets, ctx.get(bench.dut.sum), right, total))
+            ctx.set(bench.dut.clear, 1)
+            await ctx.tick()
+            ctx.set(bench.dut.clear, 0)
+            ctx.set(bench.dut.add, 0)
+
+    bench.drive(process)
+    bench.run()
+    assert wrong == []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Module, Mux, Signal, Value
+from amaranth.hdl import Cat, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -35,19 +35,32 @@ class OctetSum(wiring.Component):
 
 
 class SerialSum(wiring.Component):
-    """The same sum, one octet wide, for who only compares it or spells it in order: a third of the logic.
+    """The same sum by an adder of 8 bits, for who only compares it or spells it in order: a third of the logic.
 
-    The two halves of the sum take turns at one adder of 8 bits. A carry out of either belongs to the other, which is next.
+    The two halves of the sum take turns at the adder. A carry out of either belongs to the other, which is next.
 
     Ports: `clear`, `add` and `data` as of OctetSum. `result`, in that same cycle, is the half that `data` goes to, with it
-    in. `right`: what was taken until the cycle before sums to 0xFFFF, be it odd or even in length.
+    in. `right`: what was taken until the cycle before sums to 0xFFFF, be it odd or even in length. `sum` is the sum if what
+    was taken last were `SETTLE` zeros, after an even number of octets: by then no carry waits.
 
     To spell the sum of an even number of octets, add two octets of 0: they give its halves, the upper first, where the last
     octet before them was not 0xFF (else the lower may carry into the upper, which is out).
     """
 
+    SETTLE = 4
+    """A carry goes round once at most, as two octets of 0xFF become 0 by it; and four is even."""
+
     def __init__(self) -> None:
-        super().__init__({"clear": In(1), "add": In(1), "data": In(8), "result": Out(8), "right": Out(1)})
+        super().__init__(
+            {
+                "clear": In(1),
+                "add": In(1),
+                "data": In(8),
+                "result": Out(8),
+                "right": Out(1),
+                "sum": Out(16),
+            }
+        )
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -58,6 +71,7 @@ class SerialSum(wiring.Component):
             total.eq(turn + self.data + carry),
             self.result.eq(total[:8]),
             self.right.eq(other.all() & turn[1:].all() & (turn[0] ^ carry)),
+            self.sum.eq(Cat(other, turn)),
         ]
         with m.If(self.clear):
             m.d.sync += [turn.eq(0), other.eq(0), carry.eq(0)]

@@ -1,0 +1,141 @@
+"""Reads ARP messages. RFC 826."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
+from amaranth.lib import data, wiring
+from amaranth.lib.wiring import In, Out
+
+from roslet.gateware.ethernet import GROUP_BIT
+from roslet.gateware.meta import ADDRESSES, ETHERNET_RX
+from roslet.gateware.octets import octets, pick
+from roslet.gateware.stream import FrameSignature
+from roslet.wire.net import arp, ethernet
+
+MESSAGE = data.StructLayout({"mac": 48, "ip": 32, "probe": 1, "for_us": 1, "request": 1})
+"""Who sent a message; whether it has no address yet, its `ip` being 0 (a probe of RFC 5227, 1.1); whether the message is
+about our address; whether it asks."""
+
+FIXED = arp.FIELDS[:5]
+"""What comes before the addresses: hardware and protocol types and sizes, and the operation."""
+
+FIXED_SIZE = sum(field.bits // 8 for field in FIXED)
+MAC_SIZE, IP_SIZE = 6, 4
+SENDER_SIZE = MAC_SIZE + IP_SIZE
+"""Octets of the sender's addresses; the target's are alike."""
+
+CONSTANTS = {
+    "hardware": arp.ETHERNET,
+    "protocol": ethernet.IPV4,
+    "hardware_size": MAC_SIZE,
+    "protocol_size": IP_SIZE,
+    "operation": 0,
+}
+"""Of which the last octet, of the operation, is the one that differs."""
+
+
+def fixed() -> list[int]:
+    """The octets before the addresses."""
+    return list(b"".join(CONSTANTS[field.name].to_bytes(field.bits // 8, "big") for field in FIXED))
+
+
+class ArpRx(wiring.Component):
+    """Reads messages for IPv4 over Ethernet, and shows the last one.
+
+    Ports: `i`, messages, with any padding; `message`, and `seen`, high for one cycle when a message has ended well and is
+    what `message` shows. That stays until `overwritten` is high, in the cycle in which the sender's address of another one
+    comes; where `hold` is high then, the other one is dropped instead. So it stays for 8 cycles at least. In a cycle with
+    `rotate` high, which must be within `hold`, `message.mac` and after it `message.ip`, as a ring of 10 octets, move on to
+    the next octet.
+
+    `i` is always ready: an octet each cycle. A message is seen one cycle after its end.
+
+    Dropped, and counted where they end well: `drop_arp`: other hardware or protocol types, or sizes of addresses, than
+    Ethernet's and IPv4's; another operation than request and reply; a sender whose hardware address is a group's, or whose
+    IP address is ours (a conflict, or a spoof: RFC 5227, 2.4); a message that is cut off. `drop_busy`: `hold` was high.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(
+            {
+                "i": In(FrameSignature(ETHERNET_RX)),
+                "addresses": In(ADDRESSES),
+                "hold": In(1),
+                "rotate": In(1),
+                "overwritten": Out(1),
+                "seen": Out(1),
+                "message": Out(MESSAGE),
+                "drop_arp": Out(1),
+                "drop_busy": Out(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        i = self.i.stream
+        octet, end = i.payload.data, i.payload.end
+        ended = i.valid & end & ~i.payload.bad
+        message = self.message
+        sender = Cat(message.mac, message.ip)
+        at = Signal(range(SENDER_SIZE))  # within the state's octets
+        in_ip = at[3] | (at[2] & at[1])  # MAC_SIZE or more
+        first = at == MAC_SIZE
+        last = at == SENDER_SIZE - 1
+        own = pick(octets(Value.cast(self.addresses.ip)), at[:2] ^ MAC_SIZE % IP_SIZE)
+        same = Signal()  # as our address, until here
+        same_now = (octet == own) & (same | first)
+        busy = Signal()  # why the message is dropped
+        m.d.comb += i.ready.eq(1)
+        m.d.sync += self.seen.eq(0)
+
+        shift = Signal()
+        with m.If(shift | self.rotate):
+            m.d.sync += sender.eq(Cat(sender[8:], Mux(self.rotate, sender[:8], octet)))
+
+        with m.If(i.valid & end):
+            m.d.sync += at.eq(0)
+        with m.Elif(i.valid):
+            m.d.sync += [at.eq(at + 1), same.eq(same_now)]
+        with m.FSM():
+            with m.State("FIXED"):
+                m.d.sync += busy.eq(0)
+                with m.If(i.valid & end):
+                    m.d.comb += self.drop_arp.eq(ended)
+                with m.Elif(i.valid):
+                    with m.If(at == FIXED_SIZE - 1):
+                        m.d.sync += [at.eq(0), message.request.eq(octet == arp.REQUEST)]
+                        m.next = "SENDER"
+                        with m.If((octet != arp.REQUEST) & (octet != arp.REPLY)):
+                            m.next = "DROP"
+                    with m.Elif(octet != pick([Const(octet, 8) for octet in fixed()], at[:3])):
+                        m.next = "DROP"
+            with m.State("SENDER"):
+                with m.If(i.valid & end):
+                    m.d.comb += self.drop_arp.eq(ended)
+                    m.next = "FIXED"
+                with m.Elif(i.valid & (at == 0) & (self.hold | octet[GROUP_BIT])):
+                    m.d.sync += busy.eq(self.hold)
+                    m.next = "DROP"
+                with m.Elif(i.valid):
+                    m.d.comb += [shift.eq(1), self.overwritten.eq(at == 0)]
+                    with m.If(in_ip):
+                        m.d.sync += message.probe.eq((octet == 0) & (message.probe | first))
+                    with m.If(last):
+                        m.d.sync += at.eq(0)
+                        m.next = "TARGET"
+                        with m.If(same_now):
+                            m.next = "DROP"
+            with m.State("TARGET"):
+                with m.If(i.valid & end):
+                    m.d.comb += self.drop_arp.eq(ended)
+                    m.next = "FIXED"
+                with m.Elif(i.valid & last):
+                    m.d.sync += message.for_us.eq(same_now)
+                    m.next = "PADDING"
+            with m.State("PADDING"), m.If(i.valid & end):
+                m.d.sync += self.seen.eq(ended)
+                m.next = "FIXED"
+            with m.State("DROP"), m.If(i.valid & end):
+                m.d.comb += [self.drop_arp.eq(ended & ~busy), self.drop_busy.eq(ended & busy)]
+                m.next = "FIXED"
+        return m

@@ -1,0 +1,135 @@
+"""Ethernet II frames in and out: whom they are for, and what is in them. IEEE 802.3, 3.1.1."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Const, Module, Mux, Signal, Value
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out, connect, flipped
+
+from roslet.gateware import multicast
+from roslet.gateware.header import HeaderReader, HeaderWriter
+from roslet.gateware.meta import ADDRESSES, ETHERNET_RX, ETHERNET_TX
+from roslet.gateware.octets import octets, pick
+from roslet.gateware.stream import FrameSignature
+from roslet.wire.net import ethernet
+
+ADDRESS = 6
+"""Octets of an address."""
+
+GROUP_BIT = 0
+"""Of the first octet: the address is one of a group, or broadcast. IEEE 802.3, 3.2.3."""
+
+
+class EthernetRx(wiring.Component):
+    """Takes the Ethernet header off the frames that are for this node, and sorts them by type.
+
+    Ports: `i`, frames from the destination address on; `arp` and `ipv4`, what follows the header, padding as it came, with
+    who sent it beside it. For this node is what goes to `addresses.mac`, to everybody, to 224.0.0.1, or to one of `groups`,
+    of which there are `count` (their hardware addresses are compared, which 32 groups share: whoever reads the datagram sees
+    the group itself). `addresses` and `groups` are steady while frames come.
+
+    Throughput one octet a cycle, without a pause between frames; `i` is ready whenever the output that the frame goes to is.
+    No latency: an octet passes in the cycle in which it comes. Holds the sender's address and nothing else. A bad end is
+    passed on.
+
+    Dropped, and counted where they end well: `drop_short`, frames that end within the header; `drop_address`, those for
+    somebody else; `drop_type`, those for us that are neither ARP nor IPv4.
+    """
+
+    def __init__(self, count: int = 0) -> None:
+        self._count = count
+        super().__init__(
+            {
+                "i": In(FrameSignature()),
+                "arp": Out(FrameSignature(ETHERNET_RX)),
+                "ipv4": Out(FrameSignature(ETHERNET_RX)),
+                "addresses": In(ADDRESSES),
+                "groups": In(multicast.groups(count)),
+                "drop_short": Out(1),
+                "drop_address": Out(1),
+                "drop_type": Out(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.submodules.reader = reader = HeaderReader(ethernet.FIELDS, ("source", "type"))
+        connect(m, flipped(self.i), reader.i)
+        m.d.comb += self.drop_short.eq(reader.drop_short)
+
+        # The destination is compared as its octets pass; a header is longer than it, so that it is known by the body.
+        i = self.i.stream
+        at = Signal(range(ADDRESS + 1))
+        taken = i.valid & i.ready
+        with m.If(taken):
+            with m.If(i.payload.end):
+                m.d.sync += at.eq(0)
+            with m.Elif(at != ADDRESS):
+                m.d.sync += at.eq(at + 1)
+        comparing = taken & (at != ADDRESS)
+        group = Signal()
+        with m.If(taken & (at == 0)):
+            m.d.sync += group.eq(i.payload.data[GROUP_BIT])
+        wanted = [
+            (Const(1), Value.cast(self.addresses.mac)),
+            (Const(1), Const(multicast.number(multicast.BROADCAST), 48)),
+            (Const(1), multicast.hardware_address(Const(multicast.number(multicast.ALL_HOSTS), 32))),
+        ]
+        for n in range(self._count):
+            wanted.append((self.groups[n].valid, multicast.hardware_address(self.groups[n].ip)))
+        same = Signal(len(wanted))
+        for bit, (valid, address) in zip(same, wanted, strict=True):
+            octet = pick(octets(address), at)
+            with m.If(comparing):
+                m.d.sync += bit.eq((i.payload.data == octet) & Mux(at == 0, valid, bit))
+
+        o = reader.o
+        source, type_ = o.meta.header.source, Value.cast(o.meta.header.type)
+        arp, ipv4 = type_ == ethernet.ARP, type_ == ethernet.IPV4
+        ours = same.any()
+        for port, chosen in ((self.arp, ours & arp), (self.ipv4, ours & ipv4)):
+            m.d.comb += [
+                port.meta.source.eq(source),
+                port.meta.group.eq(group),
+                port.stream.payload.eq(o.stream.payload),
+                port.stream.valid.eq(o.stream.valid & chosen),
+            ]
+        ended = o.stream.valid & o.stream.payload.end & ~o.stream.payload.bad
+        with m.If(~ours):
+            m.d.comb += [o.stream.ready.eq(1), self.drop_address.eq(ended)]
+        with m.Elif(arp):
+            m.d.comb += o.stream.ready.eq(self.arp.stream.ready)
+        with m.Elif(ipv4):
+            m.d.comb += o.stream.ready.eq(self.ipv4.stream.ready)
+        with m.Else():
+            m.d.comb += [o.stream.ready.eq(1), self.drop_type.eq(ended)]
+        return m
+
+
+class EthernetTx(wiring.Component):
+    """Puts the Ethernet header before each frame, with `addresses.mac` as its sender; padding is the MAC's.
+
+    Ports: `i`, frames with their destination and type; `o`, frames from the destination on. Throughput one octet a cycle,
+    no latency: a frame's header begins when its first item is valid, which then waits for 14 cycles. A bad end is passed on.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(
+            {
+                "i": In(FrameSignature(ETHERNET_TX)),
+                "o": Out(FrameSignature()),
+                "addresses": In(ADDRESSES),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.submodules.writer = writer = HeaderWriter(ethernet.FIELDS)
+        m.d.comb += [
+            writer.i.meta.destination.eq(self.i.meta.destination),
+            writer.i.meta.source.eq(self.addresses.mac),
+            writer.i.meta.type.eq(self.i.meta.type),
+        ]
+        connect(m, wiring.flipped(self.i).stream, writer.i.stream)
+        connect(m, writer.o, flipped(self.o))
+        return m

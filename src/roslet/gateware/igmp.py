@@ -1,0 +1,223 @@
+"""IGMP version 2, a host's side: says which groups are joined. RFC 2236."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal, Value
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out, connect, flipped
+
+from roslet.gateware import multicast
+from roslet.gateware.checksum import SerialSum
+from roslet.gateware.header import wire_order
+from roslet.gateware.igmp_rx import IgmpRx
+from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, IPV4_RX
+from roslet.gateware.octets import octets, pick
+from roslet.gateware.stream import FrameSignature
+from roslet.wire.fields import Field
+from roslet.wire.net import ethernet, igmp, ipv4
+
+TICKS = 160
+"""A second: 16 to the tenth of a second in which delays are given, so that they differ more finely than that."""
+
+UNSOLICITED, V1 = 100, 100
+"""Tenths of a second: Unsolicited Report Interval (RFC 2236, 8.10), Query Response Interval of version 1 (8.3, and 4)."""
+
+REPEATS = 2
+"""How often the first report of a group is repeated, lest it was lost: "once or twice", RFC 2236, 3."""
+
+ROUTER_ALERT = bytes((0x94, 0x04, 0x00, 0x00))
+"""RFC 2113, 2.1."""
+
+_TAPS = 0xB400
+"""x^16 + x^14 + x^13 + x^11 + 1, which is primitive: all states but 0 follow one another."""
+
+HEADER = ipv4.SIZE + len(ROUTER_ALERT)
+_IPV4 = {
+    "version_ihl": 4 << 4 | HEADER // 4,
+    "dscp_ecn": 0,
+    "total_length": HEADER + igmp.SIZE,
+    "identification": 0,
+    "flags_fragment": ipv4.DONT_FRAGMENT,
+    "ttl": 1,  # RFC 2236, 2
+    "protocol": ipv4.IGMP,
+}
+_CHECKSUMS = 5
+"""Bits 3 to 1 of the places of both checksums, 10 and 26, and of no other: they are summed as zeros."""
+
+_IGMP = {"type": igmp.REPORT, "max_response": 0}
+
+
+def _fields(table: tuple[Field, ...], values: Mapping[str, int | Value]) -> list[Value]:
+    """The fields of a header, as they lie on the wire."""
+    return [
+        wire_order(field, Const(value, field.bits) if isinstance(value, int) else value)
+        for field in table
+        for value in (values[field.name],)
+    ]
+
+
+class Igmp(wiring.Component):
+    """Reports the `groups` that are joined, `count` of them, when they are and when a router asks.
+
+    Ports: `i`, messages that came (IPV4_RX of protocol IGMP); `o`, whole IPv4 packets, for EthernetTx, to the group itself,
+    with the router alert option and a TTL of 1, without a pause within one; `groups`, each steady while it is valid;
+    `addresses`, steady while `enable` is high.
+
+    A group is reported at once when it becomes valid, or `enable` rises, and again twice, each time some random time later,
+    up to 10 s. A query, of all or of one, is answered after a random time up to what it allows, or 10 s where it says 0 as
+    those of version 1 do; of a later query while one waits the earlier of both times holds. One time is kept for all groups:
+    those that are to be reported then go out one after another. Random times are by a shift register and the last octets of
+    the hardware address, in steps of 1/160 s of `clock_hz`.
+
+    224.0.0.1 must not be among the groups: nobody reports it. Not there: suppression of a report when another host's is
+    heard, which IGMPv3 gave up (RFC 3376, A.2) and switches that snoop do without; leave messages, as `enable` and `valid`
+    stay high; and the older and newer versions: a query of either is answered with a report of version 2.
+
+    `i` is always ready. A report begins 42 cycles after its time has come. `drop_igmp`: see `IgmpRx`.
+    """
+
+    def __init__(self, clock_hz: int, count: int = 1) -> None:
+        if clock_hz < TICKS:
+            raise ValueError(f"a clock has at least {TICKS} Hz here, not {clock_hz}")
+        if count < 1:
+            raise ValueError(f"IGMP is for at least one group, not {count}")
+        self._cycles = clock_hz // TICKS
+        self._count = count
+        super().__init__(
+            {
+                "i": In(FrameSignature(IPV4_RX)),
+                "o": Out(FrameSignature(ETHERNET_TX)),
+                "addresses": In(ADDRESSES),
+                "groups": In(multicast.groups(count)),
+                "enable": In(1),
+                "drop_igmp": Out(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.submodules.rx = rx = IgmpRx(self._count)
+        connect(m, flipped(self.i), rx.i)
+        m.d.comb += [rx.groups.eq(self.groups), self.drop_igmp.eq(rx.drop_igmp)]
+
+        due, joined = Signal(self._count), Signal(self._count)
+        sent = Signal(self._count)  # high for one cycle
+        more = Signal(self._count)
+        valid = Cat(group.valid & self.enable for group in self.groups)
+        joining = valid & ~joined
+        m.d.sync += [joined.eq(valid), due.eq((due & ~sent | more | joining) & valid)]
+
+        # When: `left` ticks from now while `running`. `choosing` takes a random number of those that are allowed.
+        cycle = Signal(range(self._cycles))
+        tick = cycle == self._cycles - 1
+        m.d.sync += cycle.eq(Mux(tick, 0, cycle + 1))
+        noise = Signal(16, init=1)
+        m.d.sync += noise.eq((noise >> 1) ^ Mux(noise[0], _TAPS, 0))
+        running, choosing = Signal(), Signal()
+        limit = Signal(8)
+        delay = Signal(12)
+        left = Signal(12)
+        repeats = Signal(range(REPEATS + 1))
+        m.d.comb += delay.eq(noise ^ self.addresses.mac[-12:])
+        with m.If(running & tick & (left != 0)):
+            m.d.sync += left.eq(left - 1)
+        with m.If(choosing & (delay[4:] < limit)):
+            m.d.sync += [choosing.eq(0), running.eq(1)]
+            with m.If(~running | (delay < left)):
+                m.d.sync += left.eq(delay)
+        over = running & (left == 0)
+        with m.If(over & (due == 0)):
+            m.d.sync += running.eq(0)
+            with m.If(repeats != 0):
+                m.d.sync += [repeats.eq(repeats - 1), choosing.eq(1), limit.eq(UNSOLICITED)]
+                m.d.comb += more.eq(valid)
+        with m.If(rx.query & self.enable):
+            allowed = Mux(rx.max_response == 0, V1, rx.max_response)
+            m.d.sync += choosing.eq(1)
+            with m.If(~choosing | (allowed < limit)):
+                m.d.sync += limit.eq(allowed)
+            m.d.comb += more.eq(rx.named)
+        with m.If(joining != 0):
+            m.d.sync += [running.eq(1), left.eq(0), repeats.eq(REPEATS)]
+
+        self._compose(m, over, due, sent)
+        return m
+
+    def _compose(self, m: Module, over: Value, due: Value, sent: Value) -> None:
+        """Send a report of each group that is `due`, when it is `over`."""
+        o = self.o.stream
+        m.submodules.sum = total = SerialSum()
+        which = Signal(range(self._count))
+        group = Array(group.ip for group in self.groups)[which] if self._count > 1 else self.groups[0].ip
+        header_sum = Signal(16)
+        settling, settled = Signal(), Signal(range(SerialSum.SETTLE + 1))
+        at = Signal(range(HEADER + igmp.SIZE))
+
+        fields = [
+            *_fields(
+                ipv4.FIELDS,
+                {
+                    **_IPV4,
+                    "checksum": ~header_sum,
+                    "source": Value.cast(self.addresses.ip),
+                    "destination": group,
+                },
+            ),
+            Const(multicast.number(ROUTER_ALERT), 32),
+            *_fields(igmp.FIELDS, {**_IGMP, "checksum": ~total.sum, "group": group}),
+        ]
+        octet = pick(octets(Cat(fields)), at)
+        m.d.comb += [
+            total.data.eq(Mux(settling | (at[1:4] == _CHECKSUMS), 0, octet)),
+            o.payload.data.eq(octet),
+            self.o.meta.destination.eq(multicast.hardware_address(group)),
+            self.o.meta.type.eq(ethernet.IPV4),
+        ]
+        with m.FSM():
+            with m.State("IDLE"):
+                m.d.comb += total.clear.eq(1)
+                m.d.sync += at.eq(0)
+                for n in reversed(range(self._count)):
+                    with m.If(due[n]):
+                        m.d.sync += which.eq(n)
+                with m.If(over & due.any()):
+                    m.next = "HEADER"
+            with m.State("HEADER"):
+                m.d.comb += total.add.eq(1)
+                m.d.sync += at.eq(at + 1)
+                with m.If(at == HEADER - 1):
+                    m.next = "HEADER SUM"
+            with m.State("HEADER SUM"):
+                m.d.comb += [settling.eq(1), total.add.eq(1)]
+                m.d.sync += [settled.eq(settled + 1), header_sum.eq(total.sum)]
+                with m.If(settled == SerialSum.SETTLE):
+                    m.d.comb += total.clear.eq(1)
+                    m.d.sync += settled.eq(0)
+                    m.next = "MESSAGE"
+            with m.State("MESSAGE"):
+                m.d.comb += total.add.eq(1)
+                m.d.sync += at.eq(at + 1)
+                with m.If(at == HEADER + igmp.SIZE - 1):
+                    m.next = "MESSAGE SUM"
+            with m.State("MESSAGE SUM"):
+                m.d.comb += [settling.eq(1), total.add.eq(1)]
+                m.d.sync += [settled.eq(settled + 1), at.eq(0)]
+                with m.If(settled == SerialSum.SETTLE - 1):
+                    m.d.sync += settled.eq(0)
+                    m.next = "SEND"
+            with m.State("SEND"):
+                m.d.comb += o.valid.eq(1)
+                with m.If(o.ready):
+                    m.d.sync += at.eq(at + 1)
+                    with m.If(at == HEADER + igmp.SIZE - 1):
+                        m.next = "END"
+            with m.State("END"):
+                m.d.comb += [
+                    o.valid.eq(1),
+                    o.payload.end.eq(1),
+                    sent.eq(Cat(which == n for n in range(len(due))) & o.ready.replicate(len(due))),
+                ]
+                with m.If(o.ready):
+                    m.next = "IDLE"
