@@ -44,8 +44,8 @@ class MacBench(Bench):
         pins = self.dut.pins
         outputs = [pins.phy_txd, pins.phy_tx_en, *([pins.phy_tx_er] if phy == "gmii" else [])]
         self.width = WIDTHS[phy]
-        self.watch = Watch(outputs, self.width, "phy_tx")
-        self._simulator.add_testbench(self.watch.run, background=True)
+        self.line = Watch(outputs, self.width, "phy_tx")
+        self._simulator.add_testbench(self.line.run, background=True)
         self.count(*DROPS)
 
         async def wake(ctx: Any) -> None:
@@ -75,10 +75,10 @@ def test_minimum_frames_back_to_back_lose_nothing_in_either_direction(
     bench.show([IDLE, *(cycle for frame in frames for cycle in shown(PREAMBLE + sealed(frame), bench.width))])
     bench.send("tx", frames)
     got = bench.receive("rx")
-    bench.run(lambda: len(got) == len(bench.watch.carriers) == len(frames))
+    bench.run(lambda: len(got) == len(bench.line.carriers) == len(frames))
     assert [frame for frame, _ in got] == frames
-    assert bench.watch.carriers == [PREAMBLE + sealed(frame) for frame in frames]
-    assert bench.watch.gaps[1:] == [96 // bench.width] * (len(frames) - 1)
+    assert bench.line.carriers == [PREAMBLE + sealed(frame) for frame in frames]
+    assert bench.line.gaps[1:] == [96 // bench.width] * (len(frames) - 1)
     assert bench.dropped == {}
 
 
@@ -90,8 +90,8 @@ def test_stalls_that_leave_the_core_faster_than_the_line_lose_nothing(stalls: in
     bench.show([IDLE, *(cycle for frame in frames for cycle in shown(PREAMBLE + sealed(frame), 4))])
     bench.send("tx", frames)
     got = bench.receive("rx")
-    bench.run(lambda: len(got) == len(bench.watch.carriers) == len(frames))
-    assert [frame for frame, _ in got] == bench.watch.frames == frames
+    bench.run(lambda: len(got) == len(bench.line.carriers) == len(frames))
+    assert [frame for frame, _ in got] == bench.line.frames == frames
     assert bench.dropped == {}
 
 
@@ -145,7 +145,7 @@ def test_frames_that_cannot_be_sent_are_spoilt_and_counted() -> None:
     bench.send("tx", [bytes(1515), FRAME, Bad(FRAME[:20]), FRAME])
 
     async def dry(ctx: Any) -> None:
-        while len(bench.watch.carriers) < 4:
+        while len(bench.line.carriers) < 4:
             await ctx.tick()
         stream = bench.dut.tx.stream
         for n in range(31):
@@ -158,8 +158,8 @@ def test_frames_that_cannot_be_sent_are_spoilt_and_counted() -> None:
             ctx.set(stream.valid, 0)
 
     bench.drive(dry)
-    bench.run(lambda: len(bench.watch.carriers) == 5)
-    assert bench.watch.frames == [FRAME, FRAME]
+    bench.run(lambda: len(bench.line.carriers) == 5)
+    assert bench.line.frames == [FRAME, FRAME]
     assert bench.dropped == {"tx_giant": 1, "underrun": 1}
 
 
@@ -192,8 +192,8 @@ def test_a_frame_may_be_late_by_seven_octets(phy: str, period: float, lateness: 
                 await ctx.tick().repeat(pause)
 
     bench.drive(process)
-    bench.run(lambda: len(bench.watch.carriers) == 1)
-    assert bench.watch.frames == ([] if spoilt else [FRAME])
+    bench.run(lambda: len(bench.line.carriers) == 1)
+    assert bench.line.frames == ([] if spoilt else [FRAME])
     assert bench.dropped == ({"underrun": 1} if spoilt else {})
 
 

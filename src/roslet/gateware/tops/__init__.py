@@ -1,0 +1,1 @@
+"""Whole designs: their ports are pins and the user's signals."""
