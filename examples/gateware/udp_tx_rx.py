@@ -75,7 +75,7 @@ class UdpTxRx(wiring.Component):
     def _receive(self, m: Module) -> None:
         m.submodules.rxbuf = rxbuf = memory.Memory(shape=32, depth=self._words, init=[])
         write, read = rxbuf.write_port(), rxbuf.read_port()
-        length = read.data[16:]
+        length = Signal(16)  # block RAM is slow: what it gives is not compared in the same cycle
         m.d.comb += [
             write.addr.eq(self.udp_rxbuf_addr),
             write.data.eq(self.udp_rxbuf_wdata),
@@ -85,6 +85,9 @@ class UdpTxRx(wiring.Component):
         ]
         with m.FSM():
             with m.State("WAIT"), m.If(self.udp_rxbuf_grant):
+                m.next = "READ"
+            with m.State("READ"):
+                m.d.sync += length.eq(read.data[16:])
                 m.next = "SHOW"
             with m.State("SHOW"):
                 m.d.comb += self.udp_rxbuf_rel.eq(1)

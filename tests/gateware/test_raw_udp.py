@@ -176,7 +176,7 @@ def test_a_datagram_is_granted_four_cycles_after_its_end_has_come_and_an_octet_i
     bench = Bench(RawUdpRx(), stalls=0)
     receiver = Receiver(bench, hold=lambda n: 0)
     bench.send("i", frames, metas(frames))
-    # The second comes while the first is held, for a cycle: dropped, its first item waits one cycle.
+    # The second comes while the first is held: dropped.
     bench.run(
         lambda: len(receiver.got) == 2, cycles=(1 + 248 + 1 + 3) + (1 + 248 + 1) + (1 + 248 + 1 + 3) + 6
     )

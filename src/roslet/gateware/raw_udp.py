@@ -57,13 +57,13 @@ class RawUdpRx(wiring.Component):
     out as above; `grant` is high while the memory is the user's to read; `rel`, high for a cycle, gives it back and means
     nothing while `grant` is low.
 
-    A datagram is taken one octet a cycle. Its first item waits for one cycle; its end waits for three, in which the last
-    word and those of the header are written, and `grant` rises in the cycle after it has been taken. The memory is not
-    touched while `grant` is high. Holds one word.
+    A datagram is taken one octet a cycle. Its first item waits for two cycles, to be judged; its end waits for three,
+    in which the last word and those of the header are written, and `grant` rises in the cycle after it has been taken; a bad
+    end waits for one. The memory is not touched while `grant` is high. Holds one word.
 
     A datagram whose end is bad is forgotten: the memory then holds some of it, and is not granted. Dropped whole, and
     counted if their end is good: `drop_port`, for another port; `drop_oversize`, more than `limit` octets (248 for the
-    memory of the manual); `drop_busy`, its first item came while the memory was the user's.
+    memory of the manual); `drop_busy`, the memory was the user's when it began.
     """
 
     def __init__(self, address_width: int = 6, limit: int | None = None) -> None:
@@ -88,8 +88,11 @@ class RawUdpRx(wiring.Component):
         m = Module()
         i, meta = self.i.stream, self.i.meta
         ended = i.payload.end & ~i.payload.bad
-        elsewhere = meta.destination_port != self.port
-        oversize = meta.length > self._limit
+        elsewhere, oversize = Signal(), Signal()
+        m.d.sync += [
+            elsewhere.eq(meta.destination_port != self.port),
+            oversize.eq(meta.length > self._limit),
+        ]
 
         word = Signal(32)
         at = Signal(2)  # of the octets of a word
@@ -102,12 +105,14 @@ class RawUdpRx(wiring.Component):
             with m.State("IDLE"):
                 m.d.sync += self.addr.eq(RX_HEADER)
                 with m.If(i.valid):
-                    m.next = "DATA"
-                    with m.If(self.grant | elsewhere | oversize):
-                        m.next = "DROP"
+                    m.next = "JUDGE"
+            with m.State("JUDGE"):
+                m.next = "DATA"
+                with m.If(self.grant | elsewhere | oversize):
+                    m.next = "DROP"
             with m.State("DATA"):
                 full = Signal()
-                m.d.comb += [i.ready.eq(~i.payload.end | i.payload.bad), write.eq(full)]
+                m.d.comb += [i.ready.eq(~i.payload.end), write.eq(full)]
                 m.d.sync += [full.eq(0), self.addr.eq(self.addr + full)]
                 with m.If(i.valid & ~i.payload.end):
                     m.d.sync += [at.eq(at + 1), full.eq(at == 3)]
@@ -120,7 +125,7 @@ class RawUdpRx(wiring.Component):
                     m.next = "LAST"
                     with m.If(i.payload.bad):
                         m.d.sync += at.eq(0)
-                        m.next = "IDLE"
+                        m.next = "DROP"
             with m.State("LAST"):
                 m.d.comb += write.eq(at != 0)
                 m.d.sync += [at.eq(0), self.addr.eq(0)]

@@ -65,9 +65,9 @@ class UdpRx(wiring.Component):
         at = Signal(range(udp.SIZE))
         length = Signal(16)
         m.d.comb += length.eq(Cat(numbers.length[:3], numbers.length[3:] - 1))  # less udp.SIZE, 8
-        count = Signal(16)
+        count = Signal(16, init=udp.SIZE)  # octets, of header and data
         full = Signal()
-        m.d.comb += full.eq(count == length)
+        m.d.comb += full.eq(count == numbers.length)
 
         in_header = Signal()
         any_checksum = Signal()
@@ -121,7 +121,7 @@ class UdpRx(wiring.Component):
                 with m.If(ended):
                     m.next = "HEADER"
         with m.If(ended):
-            m.d.sync += [at.eq(0), count.eq(0), any_checksum.eq(0)]
+            m.d.sync += [at.eq(0), count.eq(udp.SIZE), any_checksum.eq(0)]
         return m
 
     def _sum(
