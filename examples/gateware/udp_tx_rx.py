@@ -1,7 +1,10 @@
-"""Sends a text by UDP now and then, and shows by LEDs how long a datagram it received.
+"""Sends a text by UDP now and then, and shows by LEDs how long a datagram it received: the manual's example udp-tx-rx.
 
-This is the user's part, with the two memories: its ports are those that the node has for them, seen from the other side. The
-manual's example udp-tx-rx does the same.
+`UdpTxRx` is the user's part, with the two UDP memories: its ports are those that the node has for them, seen from the other
+side. `Design` is the whole: a node, that part, and the memory where fragments wait.
+
+    roslet gateware sim udp-tx-rx
+    roslet gateware build udp-tx-rx --target ecp5
 """
 
 from __future__ import annotations
@@ -9,6 +12,9 @@ from __future__ import annotations
 from amaranth.hdl import Module, Signal
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out
+
+from roslet.gateware.config import Config
+from roslet.gateware.tops.ethernet_udp import EthernetUdp
 
 TEXT = b"UDP Send Test\n"
 LENGTHS = (1, 5, 10, 15)
@@ -93,3 +99,71 @@ class UdpTxRx(wiring.Component):
                 m.d.comb += self.udp_rxbuf_rel.eq(1)
                 m.d.sync += [self.led[n].eq(length >= least) for n, least in enumerate(LENGTHS)]
                 m.next = "WAIT"
+
+
+MAC, ADDRESS, GATEWAY, MASK = "02:00:00:00:00:00", "192.168.1.100", "192.168.1.1", "255.255.255.0"
+PORT = 1234
+
+
+def number(text: str) -> int:
+    """An address as ports have it, the first octet in the lowest bits."""
+    octets = bytes.fromhex(text.replace(":", "")) if ":" in text else bytes(map(int, text.split(".")))
+    return int.from_bytes(octets, "little")
+
+
+class Design(wiring.Component):
+    """The node ADDRESS with this user logic, at the pins of an FPGA: `clk` with `clk_hz`, the PHY's, and `led`.
+
+    It sends `rate` times a second. With `counters` the ports `drop_reason` and `drop_count` of the node are there.
+    """
+
+    def __init__(
+        self, clk_hz: int = 100_000_000, rate: float = 1.0, phy: str = "mii", counters: bool = False
+    ) -> None:
+        self._clk_hz = clk_hz
+        self._node = EthernetUdp(Config(ros2clk_hz=clk_hz), phy, counters)
+        self._user = UdpTxRx(round(clk_hz / rate), self._node.config.udp_txbuf_awidth)
+        self.reasons = self._node.reasons
+        pins = self._node.signature.members
+        self._pins = [name for name in pins if name in ("clk", "rst_n") or name.startswith(("phy_", "drop_"))]
+        super().__init__({**{name: pins[name] for name in self._pins}, "led": Out(len(LENGTHS))})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.submodules.node = node = self._node
+        m.submodules.user = user = self._user
+        for name in self._pins:
+            self._join(m, node, self, name)
+        for name in user.signature.members:
+            if name != "led":
+                self._join(m, node, user, name)
+        m.submodules.payloads = payloads = memory.Memory(
+            shape=8, depth=node.config.payloadsmem_depth, init=[]
+        )
+        read, write = payloads.read_port(), payloads.write_port()
+        m.d.comb += [
+            self.led.eq(user.led),
+            read.addr.eq(node.ip_payloadsmem_addr),
+            read.en.eq(node.ip_payloadsmem_ce & ~node.ip_payloadsmem_we),
+            node.ip_payloadsmem_rdata.eq(read.data),
+            write.addr.eq(node.ip_payloadsmem_addr),
+            write.en.eq(node.ip_payloadsmem_ce & node.ip_payloadsmem_we),
+            write.data.eq(node.ip_payloadsmem_wdata),
+            node.ether_en.eq(1),
+            node.mac_addr.eq(number(MAC)),
+            node.ip_addr.eq(number(ADDRESS)),
+            node.gateway_ip_addr.eq(number(GATEWAY)),
+            node.subnet_mask.eq(number(MASK)),
+            node.ros2_rx_udp_port.eq(PORT),
+            node.arp_req_retry_count.eq(4),
+            node.arp_req_retry_interval.eq(self._clk_hz // 2),
+            node.arp_req_timeout.eq(self._clk_hz * 30),
+            node.ros2_fragment_expiration.eq(self._clk_hz),
+        ]
+        return m
+
+    @staticmethod
+    def _join(m: Module, node: EthernetUdp, other: wiring.Component, name: str) -> None:
+        inside, outside = getattr(node, name), getattr(other, name)
+        is_output = node.signature.members[name].flow == Out
+        m.d.comb += outside.eq(inside) if is_output else inside.eq(outside)

@@ -36,10 +36,10 @@ class UdpStack(wiring.Component):
     fragments    of a datagram, at most; `pendings` datagrams wait for theirs at once, each fragment with up to
                  `fragment_size` octets
 
-    Ports: `rx` and `tx`, frames from and to a MAC; `udp_rx`, the data of every UDP datagram for this node, whatever its port;
-    `udp_tx`, data to be sent, whose hardware addresses are asked for by `lookup0 ..`; `addresses`, and `groups`, those that
-    it has joined, steady while `enable` is high; `retry_count`, `retry_interval`, `timeout` as `Arp` has them; `expiration`
-    and `memory` as `Reassembly` has them. `drop_<block>_<reason>`, what the blocks drop.
+    Ports: `rx` and `tx`, frames from and to a MAC; `udp_rx`, the data of every UDP datagram for this node, whatever its
+    port; `udp_tx`, data to be sent, whose hardware addresses are asked for by `lookup0 ..`; `addresses`, and `groups`, those
+    that it has joined, steady while `enable` is high; `retry_count`, `retry_interval`, `timeout` as `Arp` has them;
+    `expiration` and `ip_payloadsmem` as `Reassembly` has them. `drop_<block>_<reason>`, what the blocks drop.
 
     When `enable` rises the node tells of itself, by an announcement of its address and reports of its groups. What else is
     sent needs no `enable`: hold the stack in reset while the node is not to be there.
@@ -60,12 +60,12 @@ class UdpStack(wiring.Component):
         self._blocks: dict[str, Any] = {
             "ethernet": EthernetRx(groups),
             "arp": Arp(cache_width),
-            "igmp": Igmp(groups, clock_hz),
             "ipv4": Ipv4Rx(),
             "reassembly": Reassembly(pendings, fragments, fragment_size),
-            "protocol": ProtocolSwitch((ipv4.ICMP, ipv4.IGMP, ipv4.UDP)),
+            "protocol": ProtocolSwitch((ipv4.ICMP, ipv4.UDP, *((ipv4.IGMP,) if groups else ()))),
             "icmp": IcmpEcho(echo_data),
             "udp": UdpRx(),
+            **({"igmp": Igmp(clock_hz, groups)} if groups else {}),
         }
         self.drops = [
             (block, name)
@@ -85,7 +85,7 @@ class UdpStack(wiring.Component):
                 "enable": In(1),
                 **{name: self._blocks["arp"].signature.members[name] for name in ARP_SETTINGS},
                 "expiration": In(32),
-                "memory": self._blocks["reassembly"].signature.members["memory"],
+                "ip_payloadsmem": self._blocks["reassembly"].signature.members["ip_payloadsmem"],
                 **{self.drop_name(block, name): Out(1) for block, name in self.drops},
             }
         )
@@ -120,10 +120,11 @@ class UdpStack(wiring.Component):
         connect(m, blocks["reassembly"].o, datagrams.i1)
         connect(m, datagrams.o, blocks["protocol"].i)
         connect(m, blocks["protocol"].o0, blocks["icmp"].i)
-        connect(m, blocks["protocol"].o1, blocks["igmp"].i)
-        connect(m, blocks["protocol"].o2, blocks["udp"].i)
+        connect(m, blocks["protocol"].o1, blocks["udp"].i)
+        if "igmp" in blocks:
+            connect(m, blocks["protocol"].o2, blocks["igmp"].i)
         connect(m, blocks["udp"].o, flipped(self.udp_rx))
-        connect(m, blocks["reassembly"].memory, flipped(self.memory))
+        connect(m, blocks["reassembly"].ip_payloadsmem, flipped(self.ip_payloadsmem))
         m.d.comb += [
             ethernet.groups.eq(self.groups),
             blocks["reassembly"].expiration.eq(self.expiration),
@@ -134,7 +135,7 @@ class UdpStack(wiring.Component):
         m.submodules.udp_tx = udp = UdpTx()
         m.submodules.datagrams_tx = datagrams = FrameArbiter(2, IPV4_TX)
         m.submodules.ipv4_tx = packets = Ipv4Tx()
-        m.submodules.frames_tx = frames = FrameArbiter(3, ETHERNET_TX)
+        m.submodules.frames_tx = frames = FrameArbiter(3 if "igmp" in blocks else 2, ETHERNET_TX)
         m.submodules.ethernet_tx = ethernet = EthernetTx()
         for block in (udp, packets, ethernet):
             m.d.comb += block.addresses.eq(self.addresses)
@@ -144,13 +145,14 @@ class UdpStack(wiring.Component):
         connect(m, datagrams.o, packets.i)
         connect(m, packets.o, frames.i0)
         connect(m, blocks["arp"].o, frames.i1)
-        connect(m, blocks["igmp"].o, frames.i2)
+        if "igmp" in blocks:
+            connect(m, blocks["igmp"].o, frames.i2)
+            m.d.comb += [
+                blocks["igmp"].groups.eq(self.groups),
+                blocks["igmp"].enable.eq(self.enable),
+            ]
         connect(m, frames.o, ethernet.i)
         connect(m, ethernet.o, flipped(self.tx))
-        m.d.comb += [
-            blocks["igmp"].groups.eq(self.groups),
-            blocks["igmp"].enable.eq(self.enable),
-        ]
 
     def _ask(self, m: Module) -> None:
         arp = self._blocks["arp"]

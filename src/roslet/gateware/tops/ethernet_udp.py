@@ -57,12 +57,14 @@ class EthernetUdp(wiring.Component):
             if name.startswith("drop_")
         }
         self._counters = DropCounters(self._drops) if counters else None
-        memory = self._stack.memory.signature.members
+        memory = self._stack.ip_payloadsmem.signature.members
         members: dict[str, Any] = {
             "clk": In(1),
             "rst_n": In(1),
             "ether_en": In(1),
-            **{name: member for name, member in self._mac.pins.signature.members.items()},
+            "phy_rx_clk": In(1),
+            "phy_tx_clk": In(1),
+            **self._mac.pins.signature.members,
             "phy_rst_n": Out(1),
             "mac_addr": In(48),
             "ip_addr": In(32),
@@ -73,7 +75,10 @@ class EthernetUdp(wiring.Component):
             "arp_req_retry_interval": In(36),
             "arp_req_timeout": In(36),
             "ros2_rx_udp_port": In(16),
-            **{f"udp_rxbuf_{name}": self._rx.signature.members[name] for name in ("addr", "ce", "we", "wdata")},
+            **{
+                f"udp_rxbuf_{name}": self._rx.signature.members[name]
+                for name in ("addr", "ce", "we", "wdata")
+            },
             "udp_rxbuf_rel": In(1),
             "udp_rxbuf_grant": Out(1),
             **{f"udp_txbuf_{name}": self._tx.signature.members[name] for name in ("addr", "ce", "rdata")},
@@ -114,7 +119,7 @@ class EthernetUdp(wiring.Component):
             stack.expiration.eq(self.ros2_fragment_expiration),
         ]
         self._pins(m, mac.pins, "")
-        self._pins(m, stack.memory, "ip_payloadsmem_")
+        self._pins(m, stack.ip_payloadsmem, "ip_payloadsmem_")
         self._user(m)
         if self._counters is not None:
             m.submodules.counters = counters = self._counters
