@@ -9,8 +9,9 @@ side. `Design` is the whole: a node, that part, and the memory where fragments w
 
 from __future__ import annotations
 
-from amaranth.hdl import Module, Signal
+from amaranth.hdl import ClockDomain, ClockSignal, Module, Signal
 from amaranth.lib import memory, wiring
+from amaranth.lib.cdc import ResetSynchronizer
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.config import Config
@@ -130,6 +131,9 @@ class Design(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
+        m.domains.sync = ClockDomain()
+        m.d.comb += ClockSignal("sync").eq(self.clk)
+        m.submodules.reset = ResetSynchronizer(~self.rst_n, domain="sync")
         m.submodules.node = node = self._node
         m.submodules.user = user = self._user
         for name in self._pins:

@@ -19,8 +19,8 @@ PHYS: dict[str, Any] = {"mii": (MiiSignature, MiiRx, MiiTx), "gmii": (GmiiSignat
 
 
 def phy_clock(m: Module, domain: str, clock: Value) -> None:
-    """Make the clock domain `domain` of a pin, in reset while `sync` is and a few cycles longer."""
-    m.domains += ClockDomain(domain)
+    """Make the clock domain `domain` of a pin, for `m` and what is in it, in reset while `sync` is and a little longer."""
+    m.domains += ClockDomain(domain, local=True)
     m.d.comb += ClockSignal(domain).eq(clock)
     m.submodules[f"{domain}_reset"] = ResetSynchronizer(ResetSignal("sync"), domain=domain)
 

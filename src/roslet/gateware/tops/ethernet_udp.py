@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from amaranth.hdl import ClockDomain, ClockSignal, Module
+from amaranth.hdl import ClockDomain, ClockSignal, DomainRenamer, Module
 from amaranth.lib import wiring
 from amaranth.lib.cdc import ResetSynchronizer
 from amaranth.lib.wiring import In, Out, connect
@@ -15,13 +15,15 @@ from roslet.gateware.fifo import FrameFifo
 from roslet.gateware.mac import Mac, PhyReset, phy_clock
 from roslet.gateware.raw_udp import RawUdpRx, RawUdpTx
 from roslet.gateware.stack import UdpStack
+from roslet.wire.net import icmp
 
 PHY_RESET = 10e-6
 """Seconds. PHYs ask for 1 us (DP83848) or less."""
 
 
 class EthernetUdp(wiring.Component):
-    """A node that sends and receives UDP datagrams for the user, is found by ARP and answers pings.
+    """A node that sends and receives UDP datagrams for the user, is found by ARP and answers pings, of as much data as it
+    takes in fragments.
 
     Ports have the names, directions, widths and meanings of the manual's Table A-1, those that have to do with ROS left
     out; `raw_udp` has the layout of the two UDP memories, `reassembly` that of the third. The manual leaves open what
@@ -39,6 +41,7 @@ class EthernetUdp(wiring.Component):
         self._stack = UdpStack(
             config.ros2clk_hz,
             cache_width=config.arp_cache_addr_width,
+            echo_data=config.max_ip_fragments * config.ip_max_payload_len - icmp.SIZE,
             pendings=config.max_pendings,
             fragments=config.max_ip_fragments,
             fragment_size=config.ip_max_payload_len,
@@ -98,7 +101,19 @@ class EthernetUdp(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        self._clocks(m)
+        # A domain of its own, so that whoever uses this in a larger design may have its `sync`.
+        m.domains.node = ClockDomain(local=True)
+        m.d.comb += ClockSignal("node").eq(self.clk)
+        m.submodules.reset = ResetSynchronizer(~(self.rst_n & self.ether_en), domain="node")
+        m.submodules.node = DomainRenamer("node")(self._node())
+        return m
+
+    def _node(self) -> Module:
+        m = Module()
+        phy_clock(m, "phy_rx", self.phy_rx_clk)
+        phy_clock(m, "phy_tx", self.phy_tx_clk)
+        m.submodules.phy_reset = phy_reset = PhyReset(max(1, round(PHY_RESET * self.config.ros2clk_hz)))
+        m.d.comb += self.phy_rst_n.eq(phy_reset.phy_rst_n)
         m.submodules.mac = mac = self._mac
         m.submodules.stack = stack = self._stack
         m.submodules.rx_queue = rx_queue = FrameFifo(self.config.ext_rx_fifo_depth)
@@ -126,15 +141,6 @@ class EthernetUdp(wiring.Component):
             m.d.comb += [counters.drops[name].eq(signal) for name, signal in self._drops.items()]
             m.d.comb += [counters.reason.eq(self.drop_reason), self.drop_count.eq(counters.count)]
         return m
-
-    def _clocks(self, m: Module) -> None:
-        m.domains.sync = ClockDomain()
-        m.d.comb += ClockSignal("sync").eq(self.clk)
-        m.submodules.reset = ResetSynchronizer(~(self.rst_n & self.ether_en), domain="sync")
-        phy_clock(m, "phy_rx", self.phy_rx_clk)
-        phy_clock(m, "phy_tx", self.phy_tx_clk)
-        m.submodules.phy_reset = phy_reset = PhyReset(max(1, round(PHY_RESET * self.config.ros2clk_hz)))
-        m.d.comb += self.phy_rst_n.eq(phy_reset.phy_rst_n)
 
     def _pins(self, m: Module, block: Any, prefix: str) -> None:
         """Connect the ports of an interface with those of ours that have its names behind `prefix`."""
