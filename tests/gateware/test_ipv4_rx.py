@@ -143,8 +143,7 @@ def test_the_broadcast_address_is_that_of_the_mask(mask: str, source: str, taken
     assert len(Run([datagram(b"hello", src=source)], mask=mask).whole) == taken
 
 
-@pytest.mark.parametrize("stalls", [0, 30])
-def test_each_malformed_header_is_dropped_for_its_reason_and_the_next_datagram_is_taken(stalls: int) -> None:
+def test_each_malformed_header_is_dropped_for_its_reason_and_the_next_datagram_is_taken() -> None:
     good = datagram(noise(30))
     wrong = [
         ("drop_version", changed(good, 0, 0x65)),
@@ -163,7 +162,7 @@ def test_each_malformed_header_is_dropped_for_its_reason_and_the_next_datagram_i
     frames = []
     for _, frame in wrong:
         frames += [frame, Bad(frame), good]
-    run = Run(frames, stalls=stalls, cycles=40_000)
+    run = Run(frames, stalls=30, cycles=40_000)
     expected: dict[str, int] = {}
     for reason, _ in wrong:
         expected[reason] = expected.get(reason, 0) + 1

@@ -203,10 +203,10 @@ def reassembled(
 
 @pytest.mark.parametrize("stalls", STALLS)
 def test_a_datagram_is_put_together_in_any_order(stalls: int) -> None:
-    first, second = cut(noise(300), 160)
-    third, fourth = cut(noise(320), 160, identification=2)
-    got, drops = reassembled(Reassembly(max_payload=160), [first, second, fourth, third], stalls)
-    assert got == [(noise(300), ipv4_rx(300)), (noise(320), ipv4_rx(320))]
+    first, second = cut(noise(150), 80)
+    third, fourth = cut(noise(160), 80, identification=2)
+    got, drops = reassembled(Reassembly(max_payload=80), [first, second, fourth, third], stalls)
+    assert got == [(noise(150), ipv4_rx(150)), (noise(160), ipv4_rx(160))]
     assert not drops
 
 
@@ -375,17 +375,16 @@ def test_a_datagram_is_forgotten_when_it_expires_and_not_before(pendings: int) -
 
 
 @pytest.mark.parametrize(
-    ("pendings", "fragments", "seed"), [(1, 2, 1), (1, 3, 2), (2, 2, 3), (2, 4, 4), (3, 3, 5)]
+    ("pendings", "fragments", "stalls"), [(1, 2, 30), (1, 3, 0), (2, 2, 30), (2, 4, 0), (3, 3, 10)]
 )
-@pytest.mark.parametrize("stalls", [0, 30])
 def test_random_fragments_fare_as_in_the_naive_model(
-    pendings: int, fragments: int, seed: int, stalls: int
+    pendings: int, fragments: int, stalls: int, seed: int = 1
 ) -> None:
     rng = random.Random(seed)
     payload = 16
     model = Model(pendings, fragments, payload)
     sent: list[Fragment] = []
-    while len(sent) < 150:
+    while len(sent) < 120:
         batch: list[Fragment] = []
         for _ in range(rng.randrange(1, pendings + 2)):
             size = rng.randrange(9, fragments * payload + 3)
@@ -403,15 +402,19 @@ def test_random_fragments_fare_as_in_the_naive_model(
         if rng.random() < 0.3:
             one = rng.choice(batch)
             batch.append(Fragment(one.offset, one.data, one.more, one.identification, bad=True))
-        if rng.random() < 0.7:
+        if rng.random() < 0.5:
             rng.shuffle(batch)
+        for one in batch:
+            model.take(one)
         sent += batch
-    for one in sent:
-        model.take(one)
+        for place in model.places:  # what would wait for ever is given up, most often
+            if place.busy and not place.given_up and rng.random() < 0.7:
+                sent.append(Fragment(0, b"overlaps", False, place.key[3]))
+                model.take(sent[-1])
     got, drops = reassembled(Reassembly(pendings, fragments, payload), sent, stalls, seed)
     assert [frame for frame, _ in got] == model.whole
     assert drops == model.drops
-    assert len(got) > 5
+    assert len(got) > 8
 
 
 def test_the_largest_datagram_fills_the_memory_and_a_fragment_stalls_for_a_check_and_a_datagram_for_its_octets() -> (
