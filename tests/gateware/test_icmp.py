@@ -147,13 +147,30 @@ def test_a_request_cut_anywhere_is_forgotten() -> None:
     assert not drops
 
 
-def test_two_are_held_and_the_third_is_dropped_as_long_as_none_has_gone_out() -> None:
-    asked = [request(noise(20), seq=n) for n in range(6)]
+def test_two_are_held_and_keep_their_octets_while_others_are_dropped() -> None:
+    asked = [request(noise(20, n), seq=n) for n in range(6)]
     bench = Bench(IcmpEcho(20), stalls=0)
     bench.send("i", asked, [meta(28)] * 6)
     bench.count(*DROPS)
-    bench.run()  # nobody takes the replies
-    assert bench.counts["drop_busy"] == 4
+    got: list[bytes] = []
+
+    async def take(ctx: Any) -> None:
+        stream = bench.dut.o.stream
+        await ctx.tick().repeat(6 * 29 + 10)  # until then nobody takes the replies
+        assert bench.counts["drop_busy"] == 4
+        ctx.set(stream.ready, 1)
+        octets = bytearray()
+        while len(got) < 2:
+            (_, _, valid, item) = await ctx.tick().sample(stream.valid, stream.payload)
+            if valid and item.end:
+                got.append(bytes(octets))
+                octets.clear()
+            elif valid:
+                octets.append(item.data)
+
+    bench.drive(take)
+    bench.run()
+    assert got == [reply(message) for message in asked[:2]]
 
 
 @pytest.mark.parametrize("stalls", STALLS)
