@@ -421,7 +421,7 @@ def test_the_largest_datagram_fills_the_memory_and_a_fragment_stalls_for_a_check
     None
 ):
     first, last = cut(noise(2960), 1480)
-    got, _ = reassembled(Reassembly(), [first, last], whole=1, cycles=2 * (1480 + 1 + 5) + 2960 + 3 + 5)
+    got, _ = reassembled(Reassembly(), [first, last], whole=1, cycles=2 * (1480 + 1 + 5) + 2960 + 4 + 5)
     assert got == [(noise(2960), ipv4_rx(2960))]
 
 

@@ -29,7 +29,7 @@ class IcmpEcho(wiring.Component):
 
     A reply repeats up to `max_data` octets of data; its checksum is the request's with the type taken out of it (RFC 1624),
     so a wrong request cannot become a right reply. Two requests are held: while one is answered another is taken, so pings
-    may come back to back. Throughput an octet a cycle both ways, without stalling at `i`. A reply begins 3 cycles after the
+    may come back to back. Throughput an octet a cycle both ways, without stalling at `i`. A reply begins 4 cycles after the
     end of its request, or after the end of the reply before it. The memory has two slots of 2**n octets, the least that is
     more than the longest message, and a bit beside each octet.
 
@@ -136,24 +136,28 @@ class IcmpEcho(wiring.Component):
         o, read = self.o.stream, messages.read_port()
         reply_slot = Signal()
         following = Signal(slot_bits)
+        item = Signal(word)  # since block RAM is slow to show what it has
         m.d.comb += [
             read.addr.eq(Cat(following, reply_slot)),
             read.en.eq(0),
-            o.payload.data.eq(read.data.octet),
+            o.payload.data.eq(item.octet),
             self.o.meta.mac.eq(answered.mac),
             self.o.meta.destination.eq(answered.source),
             self.o.meta.protocol.eq(ipv4.ICMP),
             self.o.meta.length.eq(answered.length),
         ]
         with m.If(read.en):
-            m.d.sync += following.eq(following + 1)
+            m.d.sync += [following.eq(following + 1), item.eq(read.data)]
         with m.FSM():
             with m.State("IDLE"), m.If(is_answered):
+                m.d.comb += read.en.eq(1)
+                m.next = "FETCH"
+            with m.State("FETCH"):
                 m.d.comb += read.en.eq(1)
                 m.next = "REPLY"
             with m.State("REPLY"):
                 m.d.comb += [o.valid.eq(1), read.en.eq(o.ready)]
-                with m.If(o.ready & read.data.last):
+                with m.If(o.ready & item.last):
                     m.next = "END"
             with m.State("END"):
                 m.d.comb += [o.valid.eq(1), o.payload.end.eq(1)]

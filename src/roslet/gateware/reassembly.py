@@ -41,8 +41,8 @@ class _Slot(wiring.Component):
     compared with the fragment at hand one at a time: at each `rotate` the next stands ready, after as many as there can be
     the first again. None overlap, so all is there when those before the last add up to where the last begins.
 
-    `same`: the key was this fragment's. `known`: and is. `evictable`: a new datagram may have the slot: this one was given
-    up, or is a repetition, maybe of late duplicates only, of the one that was here before.
+    `same`: a cycle ago the key was this fragment's; `known`: and the datagram is still waited for. `evictable`: a new one may
+    have the slot: this one was given up, or is a repetition, maybe of late duplicates only, of the one before.
     """
 
     def __init__(self, max_fragments: int, unit_bits: int) -> None:
@@ -87,11 +87,11 @@ class _Slot(wiring.Component):
             new.start.eq(fragment.offset),
             new.stop.eq(self.stop),
             new.last.eq(~fragment.more),
-            self.same.eq(its_key == key),
             self.known.eq(self.busy & self.same),
             self.evictable.eq(self.given_up | suspect),
             self.expired.eq(self.busy & (age >= self.expiration)),
         ]
+        m.d.sync += self.same.eq(its_key == key)
         with m.If(self.busy & ~self.expired):
             m.d.sync += age.eq(age + 1)
 
@@ -147,7 +147,7 @@ class Reassembly(wiring.Component):
 
     A fragment waits for `max_fragments` + 2 cycles before its first octet is taken, and for one at its end; it is written
     an octet a cycle. When the last that was missing has come, its end waits until the whole datagram has been read and has
-    gone out, an octet a cycle; so `i` stalls for as many cycles as that has octets, and three.
+    gone out, an octet a cycle; so `i` stalls for as many cycles as that has octets, and four.
 
     Fragments belong together that have source, destination, protocol and identification in common. What has a range that
     is there already is a duplicate, and dropped (`drop_duplicate`). A datagram is given up, and all that still comes of it
@@ -255,12 +255,13 @@ class Reassembly(wiring.Component):
             for n, slot in enumerate(slots):
                 with m.Case(n):
                     m.d.comb += [base.eq(n * self._room), total.eq(slot.total)]
-        advance, fetched = Signal(), Signal()
+        advance, fetched, has_octet = Signal(), Signal(), Signal()
+        octet = Signal(8)  # since block RAM is slow to show what it has
         m.d.comb += [
             following.eq(at + 1),
             mem.addr.eq(base + Mux(advance, following, at)),
             mem.wdata.eq(i.payload.data),
-            o.payload.data.eq(mem.rdata),
+            o.payload.data.eq(octet),
             *(self.o.meta[name].eq(fragment[name]) for name, _ in IPV4_RX if name != "length"),
             self.o.meta.length.eq(total),
         ]
@@ -330,20 +331,28 @@ class Reassembly(wiring.Component):
                     m.d.comb += [mem.ce.eq(1), mem.we.eq(1)]
                     m.d.sync += at.eq(following)
             with m.State("JUDGE"):
-                m.d.sync += [at.eq(0), fetched.eq(0)]
+                m.d.sync += [at.eq(0), fetched.eq(0), has_octet.eq(0)]
                 with m.If(of_chosen(lambda slot: slot.complete)):
                     m.next = "REPLAY"
                 with m.Else():
                     m.d.comb += i.ready.eq(1)
                     m.next = "IDLE"
             with m.State("REPLAY"):
-                m.d.comb += [mem.ce.eq(1), o.valid.eq(fetched), advance.eq(fetched & o.ready)]
+                m.d.comb += [
+                    mem.ce.eq(1),
+                    o.valid.eq(has_octet),
+                    advance.eq(fetched & (o.ready | ~has_octet)),
+                ]
                 m.d.sync += fetched.eq(1)
                 with m.If(advance):
-                    m.d.sync += at.eq(following)
+                    m.d.sync += [at.eq(following), octet.eq(mem.rdata), has_octet.eq(1)]
                     with m.If(following == total):
                         m.d.comb += mem.ce.eq(0)
-                        m.next = "END"
+                        m.next = "LAST"
+            with m.State("LAST"):
+                m.d.comb += o.valid.eq(1)
+                with m.If(o.ready):
+                    m.next = "END"
             with m.State("END"):
                 m.d.comb += [o.valid.eq(1), o.payload.end.eq(1), i.ready.eq(o.ready), done.eq(o.ready)]
                 with m.If(o.ready):
