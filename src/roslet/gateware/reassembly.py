@@ -41,8 +41,8 @@ class _Slot(wiring.Component):
     compared with the fragment at hand one at a time: at each `rotate` the next stands ready, after as many as there can be
     the first again. None overlap, so all is there when those before the last add up to where the last begins.
 
-    `same`: a cycle ago the key was this fragment's; `known`: and the datagram is still waited for. `evictable`: a new one may
-    have the slot: this one was given up, or is a repetition, maybe of late duplicates only, of the one before.
+    `same`: a cycle ago the key was this fragment's; `known`: and the datagram is still waited for. `evictable`: a new one
+    may have the slot: this one was given up, or is a repetition, maybe of late duplicates only, of the one before.
     """
 
     def __init__(self, max_fragments: int, unit_bits: int) -> None:
