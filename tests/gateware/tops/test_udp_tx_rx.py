@@ -92,7 +92,8 @@ def test_the_smallest_frames_back_to_back_are_all_answered(phy: str, clk_hz: flo
 
 
 def test_latency_is_what_the_documents_say(node: UdpNode) -> None:
-    """At 100 MHz: from `rel` to the first nibble of the preamble, and from the last nibble of the FCS to `grant`."""
+    """At 100 MHz: from `rel` to the first nibble of the preamble, for the text, so that 64 octets have room below 2 us; and
+    from the last nibble of the FCS to `grant`, for 64 octets."""
     with UdpNode("mii", 100e6) as quick:
         quick.wire.run(0.0025)  # the address is known
         quick.mii.receive()
@@ -102,7 +103,7 @@ def test_latency_is_what_the_documents_say(node: UdpNode) -> None:
         released = model.now
         while not model.get("phy_tx_en"):
             model.run_cycles("clk", 1)
-        assert model.now - released < 2e-6
+        assert model.now - released < 1e-6
         quick.mii.send(datagram(bytes(64)))
         while not model.get("phy_rx_dv"):
             model.run_cycles("clk", 1)
@@ -111,7 +112,7 @@ def test_latency_is_what_the_documents_say(node: UdpNode) -> None:
         ended = model.now
         while not model.get("user udp_rxbuf_grant"):
             model.run_cycles("clk", 1)
-        assert model.now - ended < 1e-6
+        assert model.now - ended < 0.5e-6
 
 
 WRONG: dict[str, tuple[bytes, str]] = {
