@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from roslet.layout import Layout, Slot
     from roslet.layout.operations import Operation, Path
 
+# Strings of a list that are kept, and characters of each, for the next message: more are seldom the same again, and what is
+# kept stays in memory. A string of so few is never gathered.
+KEPT_TEXTS, KEPT_LENGTH = 64, 1024
+
 # A gathered payload takes no room in the buffer; the origin of alignment moves so that it is counted
 # nevertheless. The placeholders are the payload's size and the names of its start and end.
 _GATHERED = "base -= o + %s - e"
@@ -384,13 +388,36 @@ class Serializer(Codec):
         name = self.items
         if not operation.element.operations:  # messages without fields: the count is all
             return
+        count = self.size
         element = self.locals.name("element")
         yield from self.settle()
-        yield "for %s in %s:" % (element, name)
         inner = self.structs(operation.element, element)
         body = list(self.sequence_of(operation.element.operations, inner, False))
         body += self.settle()
-        yield body
+        every: Block = ["for %s in %s:" % (element, name), body]
+        if operation.element.name == "string" and operation.kind != "fixed":
+            yield from self.repeated(name, count, every)
+        else:
+            yield from every
+
+    def repeated(self, items: str, count: str, every: Block) -> Iterator[str | Block]:
+        """`every` writes strings that are often those of the message before, such as names of joints: what they came to
+        is kept from the second time on, and copied. A count precedes them, so that their padding is the same anywhere."""
+        cell = self.need("_texts%d" % len(self.globals_), "[((), None)]")
+        names, last, kept, start = (self.locals.name(one) for one in ("names", "last", "kept", "start"))
+        yield "%s = tuple(%s)" % (names, items)
+        yield "%s, %s = %s[0]" % (last, kept, cell)
+        yield "if %s is not None and %s == %s:" % (kept, names, last)
+        yield ["e = o + len(%s)" % kept, "buffer[o:e] = " + kept, "o = e"]
+        yield "else:"
+        yield [
+            start + " = o",
+            *every,
+            "if %s != %s:" % (names, last),
+            ["%s[0] = (%s if %s <= %d else (), None)" % (cell, names, count, KEPT_TEXTS)],
+            "elif %s < o and max(map(len, %s)) < %d:" % (start, names, KEPT_LENGTH),
+            ["%s[0] = (%s, bytes(buffer[%s:o]))" % (cell, names, start)],
+        ]
 
     def whole(self) -> Block | None:
         """The lines of `serialize`, if one call makes all bytes (with a short string among them or without);
