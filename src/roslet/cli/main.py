@@ -40,6 +40,7 @@ COMMANDS = {
     "doctor": "find what keeps nodes from hearing each other",
     "run": "run an unmodified rospy or rclpy program, without ROS",
     "bench": "measure speed against peers and a raw socket",
+    "gateware": "build hardware designs",
     "demo": "see it work: master, nodes, rates, round trips, in about 20 seconds",
 }
 

@@ -12,6 +12,7 @@ from roslet.gateware import multicast
 from roslet.gateware.arbiter import FrameArbiter, LookupArbiter
 from roslet.gateware.arp import Arp
 from roslet.gateware.ethernet import EthernetRx, EthernetTx
+from roslet.gateware.fifo import FrameRegister
 from roslet.gateware.icmp import MAX_DATA, IcmpEcho
 from roslet.gateware.igmp import Igmp
 from roslet.gateware.ipv4_rx import Ipv4Rx, ProtocolSwitch
@@ -143,7 +144,9 @@ class UdpStack(wiring.Component):
         connect(m, udp.o, datagrams.i0)
         connect(m, blocks["icmp"].o, datagrams.i1)
         connect(m, datagrams.o, packets.i)
-        connect(m, packets.o, frames.i0)
+        m.submodules.packet_register = register = FrameRegister(ETHERNET_TX)
+        connect(m, packets.o, register.i)
+        connect(m, register.o, frames.i0)
         connect(m, blocks["arp"].o, frames.i1)
         if "igmp" in blocks:
             connect(m, blocks["igmp"].o, frames.i2)
