@@ -39,9 +39,9 @@ class SerialSum(wiring.Component):
 
     The two halves of the sum take turns at the adder. A carry out of either belongs to the other, which is next.
 
-    Ports: `clear`, `add` and `data` as of OctetSum. `result` is the half that the next octet goes to, as of the octets taken
-    until the cycle before. `right`: what was taken until the cycle before sums to 0xFFFF, be it odd or even in length. `sum` is the sum if what
-    was taken last were `SETTLE` zeros, after an even number of octets: by then no carry waits.
+    Ports: `clear`, `add` and `data` as of OctetSum. All that is said of the sum is of what was taken until the cycle before.
+    `result` is the half that the next octet goes to. `right`: the sum is 0xFFFF, be it of an odd or an even number of octets.
+    `sum` is the sum if what was taken last were `SETTLE` zeros, after an even number of octets: by then no carry waits.
 
     To spell the sum of an even number of octets, add two octets of 0: as each is, `result` gives a half, the upper first,
     where the last octet before them was not 0xFF (else the lower may carry into the upper, which is out).
