@@ -40,7 +40,7 @@ class SerialSum(wiring.Component):
     The two halves of the sum take turns at the adder. A carry out of either belongs to the other, which is next.
 
     Ports: `clear`, `add` and `data` as of OctetSum. All that is said of the sum is of what was taken until the cycle before.
-    `result` is the half that the next octet goes to. `right`: the sum is 0xFFFF, be it of an odd or an even number of octets.
+    `result` is the half that the next octet goes to. `right`: the sum is 0xFFFF, be the number of octets odd or even.
     `sum` is the sum if what was taken last were `SETTLE` zeros, after an even number of octets: by then no carry waits.
 
     To spell the sum of an even number of octets, add two octets of 0: as each is, `result` gives a half, the upper first,
