@@ -41,7 +41,7 @@ class _Slot(wiring.Component):
     compared with the fragment at hand one at a time: at each `rotate` the next stands ready, after as many as there can be
     the first again. None overlap, so all is there when those before the last add up to where the last begins.
 
-    `same`: the key was this fragment's. `known`: and is. `evictable`: a new datagram may have the slot: this one was given
+    `same`, a cycle after the fragment has come: the key was this fragment's. `known`: and is. `evictable`: a new datagram may have the slot: this one was given
     up, or is a repetition, maybe of late duplicates only, of the one that was here before.
     """
 
@@ -87,11 +87,11 @@ class _Slot(wiring.Component):
             new.start.eq(fragment.offset),
             new.stop.eq(self.stop),
             new.last.eq(~fragment.more),
-            self.same.eq(its_key == key),
             self.known.eq(self.busy & self.same),
             self.evictable.eq(self.given_up | suspect),
             self.expired.eq(self.busy & (age >= self.expiration)),
         ]
+        m.d.sync += self.same.eq(its_key == key)  # a hundred bits take a cycle of their own
         with m.If(self.busy & ~self.expired):
             m.d.sync += age.eq(age + 1)
 
