@@ -41,8 +41,9 @@ class _Slot(wiring.Component):
     compared with the fragment at hand one at a time: at each `rotate` the next stands ready, after as many as there can be
     the first again. None overlap, so all is there when those before the last add up to where the last begins.
 
-    `same`, a cycle after the fragment has come: the key was this fragment's. `known`: and is. `evictable`: a new datagram may have the slot: this one was given
-    up, or is a repetition, maybe of late duplicates only, of the one that was here before.
+    `same`, a cycle after the fragment has come: the key was this fragment's. `known`: and is. `evictable`: a new datagram
+    may have the slot: this one was given up, or is a repetition, maybe of late duplicates only, of the one that was here
+    before.
     """
 
     def __init__(self, max_fragments: int, unit_bits: int) -> None:

@@ -21,6 +21,7 @@ from roslet.gateware.meta import (
     ADDRESSES,
     ETHERNET_RX,
     ETHERNET_TX,
+    IPV4_FRAGMENT,
     IPV4_RX,
     IPV4_TX,
     UDP_RX,
@@ -132,8 +133,8 @@ class UdpStack(wiring.Component):
         connect(m, flipped(self.rx), ethernet.i)
         connect(m, ethernet.arp, blocks["arp"].i)
         self._register(m, "packets", ETHERNET_RX, ethernet.ipv4, received.i)
-        connect(m, received.fragments, blocks["reassembly"].i)
-        connect(m, received.o, datagrams.i0)
+        self._register(m, "fragments", IPV4_FRAGMENT, received.fragments, blocks["reassembly"].i)
+        self._register(m, "received", IPV4_RX, received.o, datagrams.i0)
         connect(m, blocks["reassembly"].o, datagrams.i1)
         self._register(m, "datagrams", IPV4_RX, datagrams.o, blocks["protocol"].i)
         connect(m, blocks["protocol"].o0, blocks["icmp"].i)
