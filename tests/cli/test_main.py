@@ -24,6 +24,8 @@ LEAVES = [
     "param load",
     "interface show", "interface hash", "interface size", "interface list",
     "gen python", "master", "doctor", "run", "bench", "demo",
+    "gateware build",
+    "gateware sim",
 ]  # fmt: skip
 
 

@@ -6,13 +6,13 @@ import random
 from typing import Any
 
 import pytest
-from amaranth.hdl import Module
+from amaranth.hdl import Module, unsigned
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from gateware.frames import STALLS, Bad, Bench
 from gateware.phy import some
-from roslet.gateware.fifo import AsyncFrameFifo, FrameFifo, LossyFrameFifo
+from roslet.gateware.fifo import AsyncFrameFifo, FrameFifo, FrameRegister, LossyFrameFifo
 from roslet.gateware.stream import FrameSignature
 
 CLOCKS = pytest.mark.parametrize("other", [40e-9, 10.001e-9, 3e-9])
@@ -46,6 +46,24 @@ def test_an_item_passes_every_cycle(depth: int) -> None:
     bench.send("i", [bytes(99)] * 5)
     got = bench.receive("o")
     bench.run(lambda: len(got) == 5, cycles=510)
+
+
+@pytest.mark.parametrize("stalls", STALLS)
+def test_registers_keep_frames_and_what_is_known_of_them(stalls: int) -> None:
+    frames = some_frames(8, 30, 12)
+    bench = Bench(FrameRegister(unsigned(8)), stalls)
+    bench.send("i", frames, list(range(len(frames))))
+    got = bench.receive("o")
+    bench.run(lambda: len(got) == len(frames))
+    assert kinds([frame for frame, _ in got]) == kinds(frames)
+    assert [meta for _, meta in got] == list(range(len(frames)))
+
+
+def test_registers_pass_an_octet_every_cycle_and_take_two_more_for_an_end_with_meta() -> None:
+    bench = Bench(FrameRegister(unsigned(8)), stalls=0)
+    bench.send("i", [bytes(99)] * 5, [0] * 5)
+    got = bench.receive("o")
+    bench.run(lambda: len(got) == 5, cycles=5 * (99 + 1 + 2) + 2)
 
 
 @CLOCKS

@@ -1,16 +1,163 @@
-"""`roslet gateware`."""
+"""`roslet gateware`: hardware designs as Verilog, on FPGAs, and simulated."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import pathlib
+import runpy
+from typing import TYPE_CHECKING, Any
 
 from roslet.cli import gateware_sim
-from roslet.cli.options import Group
+from roslet.cli.options import FAILED, OK, CommandError, Group, count, positive
+from roslet.cli.output import emit_json, table
 
 if TYPE_CHECKING:
     import argparse
 
+TOP = "ethernet-udp"
+TARGETS = ("verilog", "ecp5", "ice40", "arty-a7")
+PHY_MHZ = {"mii": 25.0, "gmii": 125.0}  # IEEE 802.3, 22.2.2.1 and 35.2.2.1
+SETTINGS = (
+    "mac_addr",
+    "ip_addr",
+    "gateway_ip_addr",
+    "subnet_mask",
+    "ros2_fragment_expiration",
+    "arp_req_retry_count",
+    "arp_req_retry_interval",
+    "arp_req_timeout",
+    "ros2_rx_udp_port",
+)
+"""Inputs of the top that are constants in use: packages have not as many pins."""
+
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declare the commands."""
-    gateware_sim.add(Group(parser))
+    group = Group(parser)
+    build = group.command(
+        "build",
+        run_build,
+        "write a design as Verilog, or place and route it",
+        "roslet gateware build --target verilog --output out\n"
+        "roslet gateware build udp-tx-rx --target ecp5 --output out\n"
+        "roslet gateware build udp-tx-rx --target arty-a7 --output out && vivado -mode batch -source out/arty_a7.tcl",
+        "json",
+    )
+    build.description = (
+        "Write a design as Verilog, or synthesize, place and route it, and report LUTs, flip-flops, block RAM and the\n"
+        "frequency of each clock. The exit code is 1 where a clock is slower than it should be.\n\n"
+        "DESIGN is ethernet-udp, the node of which user logic sends and receives UDP datagrams, or an example with\n"
+        "such logic, as udp-tx-rx. Pins of ecp5 and ice40 are arbitrary; ethernet-udp's addresses and other settings\n"
+        "come there from a shift register, since no package has so many pins. For arty-a7 a Vivado project is written,\n"
+        "which nobody has run yet."
+    )
+    build.add_argument(
+        "design", nargs="?", default=TOP, metavar="DESIGN", help=f"{TOP} (default) or an example"
+    )
+    build.add_argument("--target", choices=TARGETS, required=True, help="what for")
+    build.add_argument("--output", metavar="DIR", required=True, type=pathlib.Path, help="where the files go")
+    build.add_argument(
+        "--phy", choices=sorted(PHY_MHZ), default="mii", help="what the PHY speaks (default mii)"
+    )
+    build.add_argument(
+        "--frequency",
+        type=positive,
+        metavar="MHZ",
+        help="of the clock clk (default 100; on ice40 25, with gmii 125)",
+    )
+    build.add_argument(
+        "--seed", type=count, default=1, metavar="N", help="where the placer begins (default 1)"
+    )
+
+    gateware_sim.add(group)
+
+
+def examples() -> dict[str, pathlib.Path]:
+    """The examples for hardware by the names that commands have for them. Raises CommandError."""
+    from roslet.cli.demo.programs import folder
+
+    return {path.stem.replace("_", "-"): path for path in sorted((folder() / "gateware").glob("*.py"))}
+
+
+def load(name: str) -> dict[str, Any]:
+    """What the module of an example defines. Raises CommandError."""
+    found = examples()
+    if name not in found:
+        raise CommandError(f"there is no design {name}: there are {', '.join([TOP, *found])}")
+    return runpy.run_path(str(found[name]))
+
+
+def run_build(arguments: argparse.Namespace) -> int:
+    """`roslet gateware build`."""
+    name, target = arguments.design.replace("_", "-"), arguments.target
+    if target == "arty-a7" and (arguments.phy != "mii" or name == TOP):
+        raise CommandError("the Arty A7 has a PHY with MII, and takes an example with LEDs: udp-tx-rx")
+    mhz = arguments.frequency or _default_mhz(target, arguments.phy)
+    if target == "arty-a7" and mhz != 100:
+        raise CommandError("the Arty A7 has a clock of 100 MHz")
+    try:
+        from roslet.gateware.config import Config, ros2_config_vh, ros2_ether_config_vh
+        from roslet.gateware.tops.ethernet_udp import EthernetUdp
+    except ModuleNotFoundError as error:
+        raise CommandError(f"{error.name} is not installed: pip install 'roslet[gateware]'") from None
+    hz = round(mhz * 1e6)
+    config = Config(ros2clk_hz=hz)
+    top = EthernetUdp(config, arguments.phy) if name == TOP else load(name)["Design"](hz, phy=arguments.phy)
+    identifier, folder = name.replace("-", "_"), arguments.output
+    folder.mkdir(parents=True, exist_ok=True)
+    result: dict[str, Any] = {"design": name, "target": target, "phy": arguments.phy}
+    if target == "verilog":
+        from roslet.gateware.toolchain import write_verilog
+
+        headers = {"ros2_config.vh": ros2_config_vh, "ros2_ether_config.vh": ros2_ether_config_vh}
+        for file, text in headers.items():
+            (folder / file).write_text(text(config), encoding="utf-8")
+        result["files"] = [write_verilog(top, identifier, folder).name, *headers]
+    elif target == "arty-a7":
+        from roslet.gateware.boards import arty_a7
+
+        result["files"] = arty_a7.build(top, identifier, folder)
+    else:
+        from roslet.gateware.boards import lattice
+        from roslet.gateware.boards.pinned import Pinned
+
+        chip = {"ecp5": lattice.ECP5, "ice40": lattice.ICE40}[target]
+        if name == TOP:
+            top = Pinned(top, SETTINGS)
+            result["settings_flip_flops"] = top.bits
+        phy_mhz = PHY_MHZ[arguments.phy]
+        goals = {"clk": mhz, "phy_rx_clk": phy_mhz, "phy_tx_clk": phy_mhz}
+        result.update(lattice.build(chip, top, identifier, folder, goals, arguments.seed))
+    _show(arguments, result)
+    return OK if result.get("met", True) else FAILED
+
+
+def _default_mhz(target: str, phy: str) -> float:
+    if phy == "gmii":
+        return 125.0  # the least with which the core takes every octet
+    return 25.0 if target == "ice40" else 100.0
+
+
+def _show(arguments: argparse.Namespace, result: dict[str, Any]) -> None:
+    if arguments.json:
+        emit_json(result)
+        return
+    if "files" in result:
+        for file in result["files"]:
+            print(arguments.output / file)
+        return
+    print(f"{result['design']} ({result['phy']}) on {result['device']}")
+    uses = ", ".join(f"{use} {number}" for use, number in result["luts"].items() if use != "total")
+    print(f"LUT4        {result['luts']['total']} ({uses})")
+    set_up = result.get("settings_flip_flops")
+    print(f"flip-flops  {result['flip_flops']}" + (f" ({set_up} of them for settings)" if set_up else ""))
+    print(f"block RAM   {result['block_rams']}")
+    rows = [
+        (
+            name,
+            f"{clock['fmax']:.1f}",
+            f"{clock['goal']:.1f}",
+            "" if clock["fmax"] >= clock["goal"] else "too slow",
+        )
+        for name, clock in result["clocks"].items()
+    ]
+    table(("clock", "MHz", "goal", ""), rows)

@@ -36,7 +36,7 @@ COMMANDS = {
     "action": "list, show and use actions",
     "interface": "show message, service and action definitions",
     "gen": "generate code from definitions",
-    "gateware": "simulate and build nodes in gates",
+    "gateware": "build and simulate nodes in gates",
     "master": "be a ROS 1 master",
     "doctor": "find what keeps nodes from hearing each other",
     "run": "run an unmodified rospy or rclpy program, without ROS",

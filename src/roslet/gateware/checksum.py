@@ -39,12 +39,12 @@ class SerialSum(wiring.Component):
 
     The two halves of the sum take turns at the adder. A carry out of either belongs to the other, which is next.
 
-    Ports: `clear`, `add` and `data` as of OctetSum. `result`, in that same cycle, is the half that `data` goes to, with it
-    in. `right`: what was taken until the cycle before sums to 0xFFFF, be it odd or even in length. `sum` is the sum if what
-    was taken last were `SETTLE` zeros, after an even number of octets: by then no carry waits.
+    Ports: `clear`, `add` and `data` as of OctetSum. All that is said of the sum is of what was taken until the cycle before.
+    `result` is the half that the next octet goes to. `right`: the sum is 0xFFFF, be the number of octets odd or even.
+    `sum` is the sum if what was taken last were `SETTLE` zeros, after an even number of octets: by then no carry waits.
 
-    To spell the sum of an even number of octets, add two octets of 0: they give its halves, the upper first, where the last
-    octet before them was not 0xFF (else the lower may carry into the upper, which is out).
+    To spell the sum of an even number of octets, add two octets of 0: as each is, `result` gives a half, the upper first,
+    where the last octet before them was not 0xFF (else the lower may carry into the upper, which is out).
     """
 
     SETTLE = 4
@@ -69,7 +69,7 @@ class SerialSum(wiring.Component):
         total = Signal(9)
         m.d.comb += [
             total.eq(turn + self.data + carry),
-            self.result.eq(total[:8]),
+            self.result.eq(turn + carry),
             self.right.eq(other.all() & turn[1:].all() & (turn[0] ^ carry)),
             self.sum.eq(Cat(other, turn)),
         ]

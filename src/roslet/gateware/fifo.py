@@ -7,7 +7,7 @@ come. An item takes 9 bits of memory, the width of common block RAMs: at an end 
 
 from __future__ import annotations
 
-from amaranth.hdl import Cat, Module, Mux, Signal, Value
+from amaranth.hdl import Cat, Module, Mux, ShapeLike, Signal, Value
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.cdc import PulseSynchronizer
 from amaranth.lib.fifo import SyncFIFOBuffered
@@ -37,10 +37,52 @@ def _output(m: Module, queue: SyncFIFOBuffered | CrossingQueue, o: stream.Interf
     m.d.comb += [o.valid.eq(queue.r_rdy), queue.r_en.eq(o.ready)]
 
 
-class FrameFifo(wiring.Component):
-    """A queue of `depth` items, and one in its output register, within `sync`: `i` to `o`.
+class FrameRegister(wiring.Component):
+    """Two places in registers between `i` and `o`, both with `meta`: no path leads through, neither of items nor of `ready`.
 
-    Full, it makes `i` wait: nothing is dropped. Throughput one item a cycle; latency 2 cycles.
+    `meta` passes as it is, and is not kept: where there is one, an end is taken at `i` in the cycle after it was taken at
+    `o`. Throughput one octet a cycle; latency one cycle.
+    """
+
+    def __init__(self, meta: ShapeLike | None = None) -> None:
+        super().__init__({"i": In(FrameSignature(meta)), "o": Out(FrameSignature(meta))})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        i, o = self.i.stream, self.o.stream
+        spare = Signal.like(i.payload)
+        spared = Signal()  # `spare` has an item, as `o` was not ready for the one before
+        comes = Signal()
+        if self.o.signature.layout is None:
+            m.d.comb += [i.ready.eq(~spared), comes.eq(i.valid & ~spared)]
+        else:
+            copied, gone = Signal(), Signal()  # of the end that is valid at `i`
+            m.d.comb += [
+                self.o.meta.eq(self.i.meta),
+                i.ready.eq(gone | (~spared & ~i.payload.end)),
+                comes.eq(i.valid & ~spared & ~copied),
+            ]
+            m.d.sync += gone.eq(o.valid & o.ready & o.payload.end)
+            with m.If(gone):
+                m.d.sync += copied.eq(0)
+            with m.Elif(comes):
+                m.d.sync += copied.eq(i.payload.end)
+        with m.If(~o.valid | o.ready):
+            m.d.sync += [
+                o.payload.eq(Mux(spared, spare, i.payload)),
+                o.valid.eq(spared | comes),
+                spared.eq(0),
+            ]
+        with m.Elif(comes):
+            m.d.sync += [spare.eq(i.payload), spared.eq(1)]
+        return m
+
+
+class FrameFifo(wiring.Component):
+    """A queue of `depth` items, and three in registers, within `sync`: `i` to `o`.
+
+    Full, it makes `i` wait: nothing is dropped. Throughput one item a cycle; latency 3 cycles, 1 with a depth of 2: the two
+    are then all it has.
     """
 
     def __init__(self, depth: int) -> None:
@@ -51,9 +93,14 @@ class FrameFifo(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
+        m.submodules.register = register = FrameRegister()
+        wiring.connect(m, register.o, wiring.flipped(self.o))
+        if self._depth == 2:
+            wiring.connect(m, wiring.flipped(self.i), register.i)
+            return m
         m.submodules.queue = queue = SyncFIFOBuffered(width=_WIDTH, depth=self._depth + 1)
         _input(m, self.i.stream, queue)
-        _output(m, queue, self.o.stream)
+        _output(m, queue, register.i.stream)
         return m
 
 

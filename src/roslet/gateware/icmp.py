@@ -84,7 +84,8 @@ class IcmpEcho(wiring.Component):
             message_sum.data.eq(octet),
             i.ready.eq(1),
         ]
-        too_short, too_long = ~meta.length[_SIZE_BITS:].any(), meta.length > longest
+        too_short, too_long = Signal(), Signal()  # from the second item on
+        m.d.sync += [too_short.eq(~meta.length[_SIZE_BITS:].any()), too_long.eq(meta.length > longest)]
         other_type, busy = Signal(), Signal()
         with m.FSM():
             with m.State("REQUEST"), m.If(i.valid):
@@ -97,8 +98,10 @@ class IcmpEcho(wiring.Component):
                             other_type.eq(octet != icmp.ECHO_REQUEST),
                             busy.eq(is_waiting & is_answered),
                         ]
-                        with m.If(meta.group | too_short | too_long | (is_waiting & is_answered)):
+                        with m.If(meta.group | (is_waiting & is_answered)):
                             m.next = "DROP"
+                    with m.Elif(too_short | too_long):
+                        m.next = "DROP"
                     with m.Elif(is_type & (octet != 0)):  # a code
                         m.d.sync += other_type.eq(1)
                     with m.If(other_type):
@@ -114,7 +117,7 @@ class IcmpEcho(wiring.Component):
                 m.d.comb += self.drop_type.eq(1)
             with m.Elif(meta.group):
                 m.d.comb += self.drop_group.eq(1)
-            with m.Elif(too_short):
+            with m.Elif(too_short | (at == nowhere)):
                 m.d.comb += self.drop_length.eq(1)
             with m.Elif(too_long):
                 m.d.comb += self.drop_size.eq(1)

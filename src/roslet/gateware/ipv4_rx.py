@@ -35,8 +35,8 @@ class Ipv4Rx(wiring.Component):
     that of fragments (more of them to come, or an offset that is not 0). `meta.length` is the number of octets in every
     frame of these that ends well; it is right from the first item on. `addresses` are the node's own.
 
-    Throughput an octet a cycle. Headers are taken without stalling; what follows passes without a register, and stalls as
-    `o` or `fragments` does. Holds the fields of one header.
+    Throughput an octet a cycle. Headers are taken without stalling, and judged in a cycle in which nothing is; what
+    follows passes without a register, and stalls as `o` or `fragments` does. Holds the fields of one header.
 
     A datagram is taken that is for the node's own address, in a frame that was for it alone (RFC 1122, 3.3.6); for any
     multicast group, since Ethernet's filter knows which; for 255.255.255.255, or the subnet's broadcast address (none in a
@@ -154,8 +154,8 @@ class Ipv4Rx(wiring.Component):
         m.d.comb += [
             bad_length.eq(too_long | too_short),
             bad_address.eq(bad_source | ~to_us),
-            fault.eq(~header_sum.right | bad_length | bad_address),
         ]
+        m.d.sync += fault.eq(~header_sum.right | bad_length | bad_address)
         dropping, cut, ended = Signal(), Signal(), Signal()
         m.d.comb += [
             ended.eq(i.valid & i.ready & i.payload.end),
@@ -175,7 +175,9 @@ class Ipv4Rx(wiring.Component):
                     with m.If(passing("version_ihl") & ((data[4:] != VERSION) | (data[:4] < MIN_WORDS))):
                         m.next = "DROP"
                     with m.Elif((following[2:6] == ihl) & (octet == 3)):
-                        m.next = "BODY"
+                        m.next = "JUDGE"
+            with m.State("JUDGE"):
+                m.next = "BODY"
             with m.State("BODY"):
                 with m.If(fault):
                     m.d.comb += [i.ready.eq(1), dropping.eq(1)]

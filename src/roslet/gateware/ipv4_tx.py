@@ -79,7 +79,9 @@ class Ipv4Tx(wiring.Component):
         more, boundary = Signal(), Signal()
         identification = Signal(16)
         packet_done, datagram_done, passed = Signal(), Signal(), Signal()
-        m.d.comb += left.eq(meta.length - position)
+        length = Signal.like(meta.length)  # right from the second cycle of ADDRESSES on
+        m.d.sync += length.eq(meta.length)
+        m.d.comb += left.eq(length - position)
         with m.If(datagram_done):
             m.d.sync += [position.eq(0), identification.eq(identification + 1)]
         with m.Elif(passed):

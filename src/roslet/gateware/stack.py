@@ -12,11 +12,22 @@ from roslet.gateware import multicast
 from roslet.gateware.arbiter import FrameArbiter, LookupArbiter
 from roslet.gateware.arp import Arp
 from roslet.gateware.ethernet import EthernetRx, EthernetTx
+from roslet.gateware.fifo import FrameRegister
 from roslet.gateware.icmp import MAX_DATA, IcmpEcho
 from roslet.gateware.igmp import Igmp
 from roslet.gateware.ipv4_rx import Ipv4Rx, ProtocolSwitch
 from roslet.gateware.ipv4_tx import Ipv4Tx
-from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, IPV4_RX, IPV4_TX, UDP_RX, UDP_TX, LookupSignature
+from roslet.gateware.meta import (
+    ADDRESSES,
+    ETHERNET_RX,
+    ETHERNET_TX,
+    IPV4_FRAGMENT,
+    IPV4_RX,
+    IPV4_TX,
+    UDP_RX,
+    UDP_TX,
+    LookupSignature,
+)
 from roslet.gateware.reassembly import Reassembly
 from roslet.gateware.stream import FrameSignature
 from roslet.gateware.udp import UdpRx, UdpTx
@@ -108,17 +119,24 @@ class UdpStack(wiring.Component):
         self._ask(m)
         return m
 
+    @staticmethod
+    def _register(m: Module, name: str, meta: Any, source: Any, sink: Any) -> None:
+        """Connect with registers between: paths through several blocks would be too long for 100 MHz."""
+        m.submodules[f"{name}_register"] = register = FrameRegister(meta)
+        connect(m, source, register.i)
+        connect(m, register.o, sink)
+
     def _receive(self, m: Module) -> None:
         blocks = self._blocks
         ethernet, received = blocks["ethernet"], blocks["ipv4"]
         m.submodules.datagrams = datagrams = FrameArbiter(2, IPV4_RX)
         connect(m, flipped(self.rx), ethernet.i)
         connect(m, ethernet.arp, blocks["arp"].i)
-        connect(m, ethernet.ipv4, received.i)
-        connect(m, received.fragments, blocks["reassembly"].i)
-        connect(m, received.o, datagrams.i0)
+        self._register(m, "packets", ETHERNET_RX, ethernet.ipv4, received.i)
+        self._register(m, "fragments", IPV4_FRAGMENT, received.fragments, blocks["reassembly"].i)
+        self._register(m, "received", IPV4_RX, received.o, datagrams.i0)
         connect(m, blocks["reassembly"].o, datagrams.i1)
-        connect(m, datagrams.o, blocks["protocol"].i)
+        self._register(m, "datagrams", IPV4_RX, datagrams.o, blocks["protocol"].i)
         connect(m, blocks["protocol"].o0, blocks["icmp"].i)
         connect(m, blocks["protocol"].o1, blocks["udp"].i)
         if "igmp" in blocks:
@@ -141,9 +159,9 @@ class UdpStack(wiring.Component):
             m.d.comb += block.addresses.eq(self.addresses)
         connect(m, flipped(self.udp_tx), udp.i)
         connect(m, udp.o, datagrams.i0)
-        connect(m, blocks["icmp"].o, datagrams.i1)
+        self._register(m, "echoes", IPV4_TX, blocks["icmp"].o, datagrams.i1)
         connect(m, datagrams.o, packets.i)
-        connect(m, packets.o, frames.i0)
+        self._register(m, "packets_tx", ETHERNET_TX, packets.o, frames.i0)
         connect(m, blocks["arp"].o, frames.i1)
         if "igmp" in blocks:
             connect(m, blocks["igmp"].o, frames.i2)

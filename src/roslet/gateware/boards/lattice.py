@@ -1,0 +1,104 @@
+"""Lattice's ECP5 and iCE40: Yosys, nextpnr, and what they say of size and speed. Pins are wherever nextpnr likes."""
+
+from __future__ import annotations
+
+import json
+import pathlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from roslet.gateware import toolchain
+
+
+@dataclass(frozen=True)
+class Chip:
+    """A device in a package, how it is synthesized for, and what its cells count as."""
+
+    title: str
+    synthesis: str
+    placer: str
+    device: tuple[str, ...]
+    constraints: str  # the ending of the file's name; the option of nextpnr's as well
+    frequency: str  # a line of it that gives a clock, {port}, its frequency, {mhz}
+    luts: Mapping[str, Mapping[str, int]]
+    """Of what a LUT4 is used for: the cells that take some, and how many."""
+    flip_flops: str  # what the names of such cells begin with
+    block_rams: str
+    default_mhz: float
+
+
+ECP5 = Chip(
+    title="ECP5 LFE5U-25F, speed grade 6, CABGA381",
+    synthesis="synth_ecp5 -nowidelut",  # with wide multiplexers in LUT pairs the whole takes a tenth more
+    placer="nextpnr-ecp5",
+    device=("--25k", "--speed", "6", "--package", "CABGA381", "--lpf-allow-unconstrained"),
+    constraints="lpf",
+    frequency='FREQUENCY PORT "{port}" {mhz:g} MHZ;',
+    luts={
+        "logic": {"LUT4": 1},
+        "carry": {"CCU2C": 2},
+        "ram": {"TRELLIS_DPR16X4": 6},  # 4 that hold bits, 2 that address them
+    },
+    flip_flops="TRELLIS_FF",
+    block_rams="DP16KD",
+    default_mhz=100.0,
+)
+
+ICE40 = Chip(
+    title="iCE40 HX8K, CT256",
+    synthesis="synth_ice40 -abc9 -device hx",
+    placer="nextpnr-ice40",
+    device=("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"),
+    constraints="pcf",
+    frequency="set_frequency {port} {mhz:g}",
+    luts={"logic": {"SB_LUT4": 1}},  # carries lie beside their LUTs
+    flip_flops="SB_DFF",
+    block_rams="SB_RAM40_4K",
+    default_mhz=25.0,
+)
+
+
+def build(
+    chip: Chip, top: Any, name: str, folder: pathlib.Path, goals: Mapping[str, float], seed: int = 1
+) -> dict[str, Any]:
+    """Synthesize, place and route `top` in `folder`; `goals` are MHz of the inputs that are clocks.
+
+    Returns the figures: `luts` with `total` and what for, `flip_flops`, `block_rams`, `clocks` (see `toolchain.clocks`), and
+    `met`, whether all are as fast as they should be. Raises ToolMissing, ToolFailed; what does not fit is one of these.
+    """
+    toolchain.command(chip.placer)  # before the minutes that lie ahead
+    toolchain.write_rtlil(top, name, folder)
+    netlist, report = f"{name}.json", f"{name}.report.json"
+    script = f"read_rtlil {name}.il; {chip.synthesis} -top {name} -json {netlist}"
+    toolchain.run("yosys", ["-q", "-p", script], folder)
+    constraints = f"{name}.{chip.constraints}"
+    lines = [chip.frequency.format(port=port, mhz=mhz) for port, mhz in goals.items()]
+    (folder / constraints).write_text("\n".join([*lines, ""]), encoding="utf-8")
+    result = {"lpf": ["--textcfg", f"{name}.config"], "pcf": ["--asc", f"{name}.asc"]}[chip.constraints]
+    arguments = [*chip.device, "--json", netlist, f"--{chip.constraints}", constraints, *result]
+    arguments += ["--report", report, "--seed", str(seed), "--timing-allow-fail", "-q"]
+    toolchain.run(chip.placer, arguments, folder)
+    said = json.loads((folder / report).read_text(encoding="utf-8"))
+    return figures(chip, toolchain.cells(folder / netlist, name), said)
+
+
+def figures(chip: Chip, cells: Mapping[str, int], report: dict[str, Any]) -> dict[str, Any]:
+    """What `build` returns, from the numbers of cells and nextpnr's report."""
+
+    def count(begins: str) -> int:
+        return sum(number for kind, number in cells.items() if kind.startswith(begins))
+
+    luts = {
+        use: sum(each * cells.get(kind, 0) for kind, each in kinds.items())
+        for use, kinds in chip.luts.items()
+    }
+    clocks = toolchain.clocks(report)
+    return {
+        "device": chip.title,
+        "luts": {"total": sum(luts.values()), **luts},
+        "flip_flops": count(chip.flip_flops),
+        "block_rams": count(chip.block_rams),
+        "clocks": clocks,
+        "met": all(clock["fmax"] >= clock["goal"] for clock in clocks.values()),
+    }
