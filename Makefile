@@ -1,7 +1,7 @@
 # Every target makes what it needs; `make test` on a fresh Debian 12 as root needs nothing installed by hand.
 PYTHON := .venv/bin/python
 
-.PHONY: demo test quick lint format types docs bench fuzz peers venv clean
+.PHONY: demo test quick formal lint format types docs bench fuzz peers venv clean
 
 demo: venv ## the whole path in one terminal, about 20 seconds
 	$(PYTHON) -m roslet demo
@@ -11,6 +11,9 @@ test: ## lint, types, layers, every test on CPython and MicroPython, real peers
 
 quick: venv ## the tests that need no peer process
 	$(PYTHON) -m pytest -q --ignore=tests/interop
+
+formal: venv ## the proofs of gateware, deeper than the ordinary run has time for
+	ROSLET_FORMAL_DEEP=1 $(PYTHON) -m pytest -q --timeout 1800 tests/gateware/test_formal.py
 
 lint: venv ## style and the one-way layers
 	$(PYTHON) -m ruff check
