@@ -126,9 +126,10 @@ def assume_steady(m: Module, value: Value, domain: str = "sync") -> None:
 class FrameRules(Elaboratable):
     """The rules of `FrameSignature` of one port, as properties `kind`, Assert or Assume.
 
-    `steady`, of a port that `waits`: what was valid and not taken is there still, unchanged. `bad_only_at_end`. `meta_steady`: from a frame's
-    first valid item until its end is taken. For further properties: `transfer`, `ended` (an end is taken), `taken`, how
-    many octets of the frame were taken before (up to 15), `within` (its first item was valid before this cycle).
+    `steady`, of a port that `waits`: what was valid and not taken is there still, unchanged. `bad_only_at_end`.
+    `meta_steady`: from a frame's first valid item until its end is taken. For further properties: `transfer`, `ended` (an
+    end is taken), `taken`, how many octets of the frame were taken before (up to 15), `within` (its first item was valid
+    before this cycle).
     """
 
     def __init__(self, port: Any, kind: Any, domain: str = "sync", waits: bool = True) -> None:

@@ -12,6 +12,7 @@ from roslet.gateware import fifo
 PACK = "Cat(Mux(item.end, item.bad, item.data[0]), item.data[1:], item.end)"
 TO = "o.payload.bad.eq(end & queue.r_data[0])"
 GIVE = "m.d.comb += [o.valid.eq(queue.r_rdy), queue.r_en.eq(o.ready)]"
+HOLD = "with m.If(~o.valid | o.ready):"
 
 
 class FifoSpec(Spec):
@@ -21,14 +22,14 @@ class FifoSpec(Spec):
     quick, deep = 12, 24
     clocks = ("sync", "sync")
     bugs = (
-        Bug("o.steady", GIVE, GIVE.replace("(o.ready)", "(1)")),
+        Bug("o.steady", HOLD, "with m.If(1):"),
         Bug("o.bad_only_at_end", TO, TO.replace("end & ", "")),
         Bug("order", PACK, PACK.replace("item.data[0]", "0")),
         Bug("nothing_else", "o.valid.eq(queue.r_rdy)", "o.valid.eq(1)"),
     )
 
     def block(self) -> Any:
-        return self.gates.FrameFifo(2)
+        return self.gates.FrameFifo(3)
 
     def properties(self, m: Module) -> None:
         i_domain, o_domain = self.clocks
@@ -61,6 +62,7 @@ class AsyncFifoSpec(FifoSpec):
     quick, deep = 20, 32
     clocks = ("phy_rx", "sync")
     domains = clocks
+    bugs = (Bug("o.steady", GIVE, GIVE.replace("(o.ready)", "(1)")), *FifoSpec.bugs[1:])
 
     def block(self) -> Any:
         return self.gates.AsyncFrameFifo(4, *self.clocks)

@@ -6,7 +6,7 @@ What goes over the pins is followed by a count of the octets. The check sequence
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+from types import MappingProxyType, SimpleNamespace
 from typing import Any
 
 from amaranth.hdl import Assert, Assume, Cat, Const, Cover, Module, Mux, Signal, Value
@@ -70,7 +70,7 @@ class TransmitterSpec(Spec):
     """Frames on the pins have preamble, legal sizes and gaps, the octets that came, and padding; or they are spoilt."""
 
     module = transmitter
-    constants = {"ieee802_3": SMALL}
+    constants = MappingProxyType({"ieee802_3": SMALL})
     scale = (("count[:6] == MIN_OCTETS", "count[:3] == MIN_OCTETS"),)
     quick, deep = 26, 44
     width = 8
@@ -89,7 +89,8 @@ class TransmitterSpec(Spec):
         Bug("not_spoilt", "[octet.eq(0), spoilt.eq(i.payload.bad)]", "[octet.eq(0), spoilt.eq(1)]"),
         Bug(
             "stops",
-            'self.drop_underrun.eq(1)\n                        m.d.sync += [spoilt.eq(1), remains.eq(1)]\n                        begin("FCS")',
+            "self.drop_underrun.eq(1)\n                        m.d.sync += [spoilt.eq(1), remains.eq(1)]\n"
+            '                        begin("FCS")',
             "self.drop_underrun.eq(1)\n                        m.d.sync += [spoilt.eq(1), remains.eq(1)]",
         ),
         Bug("tx_er", "self.tx_er.eq(checking & spoilt)", "self.tx_er.eq(spoilt)"),
@@ -175,7 +176,7 @@ class TransmitterSpec(Spec):
 
 
 class OctetParity(wiring.Component):
-    """In the place of FrameCheck, whose proof is apart: how the octets are fed to it is to be seen, and a solver is soon done."""
+    """In the place of FrameCheck, whose proof is apart: how octets are fed to it is to be seen, and that is soon done."""
 
     def __init__(self, width: int) -> None:
         super().__init__({"clear": In(1), "data": In(8), "fcs": Out(8), "match": Out(1)})
@@ -191,7 +192,7 @@ class ReceiverSpec(Spec):
     """A carrier gives one frame with its octets, good only if nothing was wrong with it; and nothing comes of its own."""
 
     module = receiver
-    constants = {"ieee802_3": SMALL, "FrameCheck": OctetParity}
+    constants = MappingProxyType({"ieee802_3": SMALL, "FrameCheck": OctetParity})
     scale = (("taken[6:].any()", "taken[3:].any()"),)
     quick, deep = 18, 30
     width = 8
@@ -214,7 +215,9 @@ class ReceiverSpec(Spec):
         ),
         Bug(
             "error",
-            '                with m.Elif(error):\n                    end_badly("rx_er")\n                    m.next = "DROP"\n                with m.Elif(whole)',
+            "                with m.Elif(error):\n"
+            '                    end_badly("rx_er")\n                    m.next = "DROP"\n'
+            "                with m.Elif(whole)",
             "                with m.Elif(whole)",
         ),
         Bug("size", "with m.Elif(~enough):", "with m.Elif(0):"),

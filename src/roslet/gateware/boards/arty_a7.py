@@ -36,7 +36,7 @@ PINS = {
     "led[2]": "T9",
     "led[3]": "T10",  # LD7
 }
-"""Of the board's reference manual, revision E."""
+"""As remembered of the board's public constraints, and compared with nothing: check them before a board is programmed."""
 
 _WRAPPER = """\
 // The design on an Arty A7. The PHY has no crystal: its 25 MHz come from here.
