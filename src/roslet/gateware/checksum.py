@@ -2,45 +2,18 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Cat, Module, Mux, Signal, Value
+from amaranth.hdl import Cat, Module, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 
-def add(left: Value, right: Value) -> Value:
-    """The ones' complement sum of two numbers of 16 bits: the carry comes in again at the bottom."""
-    total = left + right
-    return (total[:16] + total[16])[:16]
-
-
-class OctetSum(wiring.Component):
-    """Sums octets as 16-bit words in the order of the wire; an odd last one is the upper half of its word.
-
-    Ports: `clear` begins anew (it wins over `add`); with `add` the octet `data` is taken, in that cycle. `sum`, 16 bits, has
-    what was taken until the cycle before; it is not complemented: 0xFFFF over data with a right checksum in it.
-    """
-
-    def __init__(self) -> None:
-        super().__init__({"clear": In(1), "add": In(1), "data": In(8), "sum": Out(16)})
-
-    def elaborate(self, platform: object) -> Module:
-        m = Module()
-        odd = Signal()
-        with m.If(self.clear):
-            m.d.sync += [self.sum.eq(0), odd.eq(0)]
-        with m.Elif(self.add):
-            word = Mux(odd, self.data, self.data << 8)
-            m.d.sync += [self.sum.eq(add(self.sum, word)), odd.eq(~odd)]
-        return m
-
-
 class SerialSum(wiring.Component):
-    """The same sum by an adder of 8 bits, for who only compares it or spells it in order: a third of the logic.
+    """Sums octets as 16-bit words in the order of the wire, by an adder of 8 bits; an odd last one is the upper half of its
+    word. The two halves of the sum take turns at the adder; a carry out of either belongs to the other, which is next.
 
-    The two halves of the sum take turns at the adder. A carry out of either belongs to the other, which is next.
-
-    Ports: `clear`, `add` and `data` as of OctetSum. All that is said of the sum is of what was taken until the cycle before.
-    `result` is the half that the next octet goes to. `right`: the sum is 0xFFFF, be the number of octets odd or even.
+    Ports: `clear` begins anew (it wins over `add`); with `add` the octet `data` is taken, in that cycle. All that is said of
+    the sum is of what was taken until the cycle before; it is not complemented: 0xFFFF over data with a right checksum in
+    it. `result` is the half that the next octet goes to. `right`: the sum is 0xFFFF, be the number of octets odd or even.
     `sum` is the sum if what was taken last were `SETTLE` zeros, after an even number of octets: by then no carry waits.
 
     To spell the sum of an even number of octets, add two octets of 0: as each is, `result` gives a half, the upper first,

@@ -1,39 +1,48 @@
-"""OctetSum against a naive model: 16-bit words added up in a wide register, and what is carried folded in at the end."""
+"""SerialSum against a naive model: 16-bit words added up in a wide register, and what is carried folded in at the end."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from amaranth.hdl import Assert, Cover, Module, Signal
+from amaranth.hdl import Assert, Cover, Module, Mux, Signal
 
 from gateware.formal import Bug, Spec
 from roslet.gateware import checksum
 
 
 class SumSpec(Spec):
-    """The sum is that of the words taken since the last `clear`, as RFC 1071, 1 has it."""
+    """What is said of the sum is so of the words taken since the last `clear`, as RFC 1071, 1 has them."""
 
     module = checksum
-    quick, deep = 8, 14
-    bugs = (Bug("sum", "total[16])[:16]", "total[15])[:16]"),)
+    quick, deep = 9, 14
+    bugs = (
+        Bug("right", "(turn[0] ^ carry)", "turn[0]"),
+        Bug("result", "self.result.eq(turn + carry)", "self.result.eq(turn)"),
+        Bug("sum", "self.sum.eq(Cat(other, turn))", "self.sum.eq(Cat(turn, other))"),
+    )
 
     def block(self) -> Any:
-        return self.gates.OctetSum()
+        return self.gates.SerialSum()
 
     def properties(self, m: Module) -> None:
-        total, odd = Signal(24), Signal()
-        with m.If(self.dut.clear):
-            m.d.sync += [total.eq(0), odd.eq(0)]
-        with m.Elif(self.dut.add):
-            m.d.sync += odd.eq(~odd)
-            with m.If(odd):
-                m.d.sync += total.eq(total + self.dut.data)
-            with m.Else():
-                m.d.sync += total.eq(total + (self.dut.data << 8))
+        dut = self.dut
+        total, odd, zeros, full = Signal(24), Signal(), Signal(3), Signal()
+        with m.If(dut.clear):
+            m.d.sync += [total.eq(0), odd.eq(0), zeros.eq(0), full.eq(0)]
+        with m.Elif(dut.add):
+            m.d.sync += [
+                odd.eq(~odd),
+                total.eq(total + Mux(odd, dut.data, dut.data << 8)),
+                zeros.eq(Mux(dut.data == 0, zeros + (zeros != dut.SETTLE), 0)),
+                full.eq(dut.data == 0xFF),
+            ]
         once = total[:16] + total[16:]
+        folded = (once[:16] + once[16:])[:16]
         m.d.comb += [
-            Assert(self.dut.sum == (once[:16] + once[16:])[:16], "sum"),
-            Cover((self.dut.sum == 1) & (total[:16] == 0xFFFF), "carry"),
+            Assert(dut.right == (folded == 0xFFFF), "right"),
+            Assert(odd | full | (dut.result == folded[8:]), "result"),
+            Assert(odd | (zeros != dut.SETTLE) | (dut.sum == folded), "sum"),
+            Cover(dut.right & (total[16:] != 0), "carry"),
         ]
 
 
