@@ -10,18 +10,14 @@ import pytest
 
 from gateware.frames import Bad, Bench, taken
 from gateware.phy import PREAMBLE, Watch, fcs, sealed, some
-from roslet.gateware.gmii import GmiiTx
-from roslet.gateware.mii import MiiTx
 from roslet.gateware.transmitter import Transmitter
 
 HEADER = bytes.fromhex("ffff ffff ffff 0200 0000 0002 0806")
-TX = pytest.mark.parametrize(("block", "width"), [(MiiTx, 4), (GmiiTx, 8)])
+TX = pytest.mark.parametrize("width", [4, 8])
 
 
-def sent(
-    block: type[MiiTx | GmiiTx], width: int, frames: Sequence[bytes], carriers: int
-) -> tuple[Watch, dict[str, int]]:
-    bench = Bench(block(), stalls=0)  # it cannot wait
+def sent(width: int, frames: Sequence[bytes], carriers: int) -> tuple[Watch, dict[str, int]]:
+    bench = Bench(Transmitter(width), stalls=0)  # it cannot wait
     dut = bench.dut
     watch = Watch((dut.txd, dut.tx_en, dut.tx_er), width)
     bench._simulator.add_testbench(watch.run, background=True)
@@ -32,24 +28,24 @@ def sent(
 
 
 @TX
-def test_a_frame_gets_preamble_padding_and_fcs(block: type[MiiTx | GmiiTx], width: int) -> None:
+def test_a_frame_gets_preamble_padding_and_fcs(width: int) -> None:
     rng = random.Random(2)
     frames = [HEADER, *(HEADER + some(rng, size) for size in (1, 45, 46, 47, 1500)), b"\x01"]
-    watch, counts = sent(block, width, frames, len(frames))
+    watch, counts = sent(width, frames, len(frames))
     assert watch.carriers == [PREAMBLE + sealed(frame) for frame in frames]
     assert not watch.errors and counts == {"drop_underrun": 0, "drop_giant": 0}
 
 
 @TX
-def test_the_gap_between_frames_is_96_bit_times(block: type[MiiTx | GmiiTx], width: int) -> None:
-    watch, _ = sent(block, width, [HEADER, HEADER + bytes(47), HEADER + bytes(100)] * 2, 6)
+def test_the_gap_between_frames_is_96_bit_times(width: int) -> None:
+    watch, _ = sent(width, [HEADER, HEADER + bytes(47), HEADER + bytes(100)] * 2, 6)
     assert watch.gaps[1:] == [96 // width] * 5
 
 
 @TX
-def test_a_frame_with_a_bad_end_is_spoilt(block: type[MiiTx | GmiiTx], width: int) -> None:
+def test_a_frame_with_a_bad_end_is_spoilt(width: int) -> None:
     frames = [Bad(HEADER), HEADER, Bad(HEADER + bytes(60)), HEADER]
-    watch, counts = sent(block, width, frames, 4)
+    watch, counts = sent(width, frames, 4)
     assert watch.carriers[::2] == [
         PREAMBLE + frame + bytes(octet ^ 0xFF for octet in fcs(frame)) for frame in frames[::2]
     ]
@@ -59,8 +55,8 @@ def test_a_frame_with_a_bad_end_is_spoilt(block: type[MiiTx | GmiiTx], width: in
 
 
 @TX
-def test_a_giant_is_spoilt_and_counted(block: type[MiiTx | GmiiTx], width: int) -> None:
-    watch, counts = sent(block, width, [bytes(1515), HEADER, Bad(bytes(1516)), HEADER], 4)
+def test_a_giant_is_spoilt_and_counted(width: int) -> None:
+    watch, counts = sent(width, [bytes(1515), HEADER, Bad(bytes(1516)), HEADER], 4)
     assert watch.frames == [HEADER.ljust(60, b"\0")] * 2
     assert [len(carrier) for carrier in watch.carriers] == [8 + 1518, 8 + 64] * 2
     assert counts == {"drop_underrun": 0, "drop_giant": 2}
@@ -68,11 +64,9 @@ def test_a_giant_is_spoilt_and_counted(block: type[MiiTx | GmiiTx], width: int) 
 
 @TX
 @pytest.mark.parametrize("late", [1, 13, 59, 60, 61, 99])
-def test_a_frame_that_is_late_is_spoilt_and_counted(
-    block: type[MiiTx | GmiiTx], width: int, late: int
-) -> None:
+def test_a_frame_that_is_late_is_spoilt_and_counted(width: int, late: int) -> None:
     """Of a hundred octets the one numbered `late` does not come in time."""
-    bench = Bench(block())
+    bench = Bench(Transmitter(width))
     dut = bench.dut
     watch = Watch((dut.txd, dut.tx_en, dut.tx_er), width)
     bench._simulator.add_testbench(watch.run, background=True)
@@ -97,8 +91,8 @@ def test_a_frame_that_is_late_is_spoilt_and_counted(
 
 
 @TX
-def test_a_frame_of_no_octets_is_not_sent(block: type[MiiTx | GmiiTx], width: int) -> None:
-    watch, _ = sent(block, width, [b"", Bad(b""), HEADER, b"", HEADER, b""], 2)
+def test_a_frame_of_no_octets_is_not_sent(width: int) -> None:
+    watch, _ = sent(width, [b"", Bad(b""), HEADER, b"", HEADER, b""], 2)
     assert watch.carriers == [PREAMBLE + sealed(HEADER)] * 2
     assert watch.gaps[1] >= 96 // width
 

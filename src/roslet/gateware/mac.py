@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from amaranth.hdl import ClockDomain, ClockSignal, DomainRenamer, Module, ResetSignal, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.cdc import PulseSynchronizer, ResetSynchronizer
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.fifo import AsyncFrameFifo, LossyFrameFifo
-from roslet.gateware.gmii import GmiiRx, GmiiSignature, GmiiTx
-from roslet.gateware.mii import MiiRx, MiiSignature, MiiTx
-from roslet.gateware.receiver import REASONS
+from roslet.gateware.phy import WIDTHS, PhySignature
+from roslet.gateware.receiver import REASONS, Receiver
 from roslet.gateware.stream import FrameSignature
-
-PHYS: dict[str, Any] = {"mii": (MiiSignature, MiiRx, MiiTx), "gmii": (GmiiSignature, GmiiRx, GmiiTx)}
+from roslet.gateware.transmitter import Transmitter
 
 
 def phy_clock(m: Module, domain: str, clock: Value) -> None:
@@ -69,15 +65,14 @@ class Mac(wiring.Component):
     """
 
     def __init__(self, phy: str = "mii", rx_depth: int = 2048, tx_depth: int = 512) -> None:
-        if phy not in PHYS:
-            raise ValueError(f"a PHY is one of {', '.join(PHYS)}, not {phy!r}")
-        signature, self._receiver, self._transmitter = PHYS[phy]
+        pins = PhySignature(phy)
+        self._width = WIDTHS[phy]
         self._rx_queue = LossyFrameFifo(rx_depth, "phy_rx", "sync")
         self._tx_queue = AsyncFrameFifo(tx_depth, "sync", "phy_tx")
         drops = (*REASONS, "overflow", "underrun", "tx_giant")
         super().__init__(
             {
-                "pins": Out(signature()),
+                "pins": Out(pins),
                 "rx": Out(FrameSignature()),
                 "tx": In(FrameSignature()),
                 **{f"drop_{reason}": Out(1) for reason in drops},
@@ -86,7 +81,7 @@ class Mac(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        receiver, transmitter = self._receiver(), self._transmitter()
+        receiver, transmitter = Receiver(self._width), Transmitter(self._width)
         m.submodules.receiver = DomainRenamer("phy_rx")(receiver)
         m.submodules.rx_queue = rx_queue = self._rx_queue
         m.submodules.tx_queue = tx_queue = self._tx_queue
