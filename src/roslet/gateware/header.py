@@ -12,6 +12,7 @@ from amaranth.hdl import Cat, Const, Module, ShapeLike, Signal, Value, unsigned
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
+from roslet.gateware.octets import octets, pick
 from roslet.gateware.stream import FrameSignature
 from roslet.wire.fields import OCTETS, Field
 
@@ -83,10 +84,10 @@ class HeaderReader(wiring.Component):
         for field in self._fields:
             if field.name not in self._header.members:
                 continue
-            octets = wire_order(field, Value.cast(header[field.name]))
-            for n in range(field.bits // 8):
+            kept = octets(wire_order(field, Value.cast(header[field.name])))
+            for n, octet in enumerate(kept):
                 with m.If(i.valid & (at == field.offset + n)):
-                    m.d.sync += octets[8 * n : 8 * n + 8].eq(i.payload.data)
+                    m.d.sync += octet.eq(i.payload.data)
         return m
 
 
@@ -112,24 +113,19 @@ class HeaderWriter(wiring.Component):
         m = Module()
         i, o = self.i.stream, self.o.stream
         at = Signal(range(self._size + 1))
-        octets: list[Value] = []
+        header: list[Value] = []
         for field in self._fields:
             if field.name in self._constants:
                 value: Value = Const(self._constants[field.name], unsigned(field.bits))
             else:
                 value = Value.cast(self.i.meta[field.name])
-            value = wire_order(field, value)
-            octets += [value[8 * n : 8 * n + 8] for n in range(field.bits // 8)]
+            header += octets(wire_order(field, value))
         with m.If(at == self._size):
             m.d.comb += [o.payload.eq(i.payload), o.valid.eq(i.valid), i.ready.eq(o.ready)]
             with m.If(i.valid & o.ready & i.payload.end):
                 m.d.sync += at.eq(0)
         with m.Else():
-            m.d.comb += o.valid.eq(i.valid)
-            with m.Switch(at):
-                for n, octet in enumerate(octets):
-                    with m.Case(n):
-                        m.d.comb += o.payload.data.eq(octet)
+            m.d.comb += [o.valid.eq(i.valid), o.payload.data.eq(pick(header, at))]
             with m.If(i.valid & o.ready):
                 m.d.sync += at.eq(at + 1)
         return m

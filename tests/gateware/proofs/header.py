@@ -23,6 +23,8 @@ READER = """
 """What passes, in the reader; the writer has the same words."""
 WRITER = f"m.d.comb += [o.payload.eq(i.payload), {PASS}"
 
+HEADER = "m.d.comb += [o.valid.eq(i.valid), o.payload.data.eq(pick(header, at))]"
+
 
 class ReaderSpec(Spec):
     """A frame gives what is behind its header as it comes; or nothing, and is counted unless it is bad."""
@@ -40,7 +42,7 @@ class ReaderSpec(Spec):
         ),
         Bug("o.meta_steady", "(at == field.offset + n)", "(at >= field.offset + n)"),
         Bug("drop_short", "self.drop_short.eq(~i.payload.bad)", "self.drop_short.eq(1)"),
-        Bug("port", "octets[8 * n : 8 * n + 8]", "octets[8 * (1 - n) : 8 * (1 - n) + 8]"),
+        Bug("port", "enumerate(kept)", "enumerate(reversed(kept))"),
         Bug("address", "if field.kind == OCTETS:", "if field.kind != OCTETS:"),
         Bug("below", "self.o.meta.below.eq(self.i.meta)", "self.o.meta.below.eq(self.i.meta[:-1])"),
     )
@@ -81,17 +83,9 @@ class WriterSpec(Spec):
     module = header
     quick, deep = 20, 40
     bugs = (
-        Bug(
-            "o.steady",
-            "m.d.comb += o.valid.eq(i.valid)",
-            "m.d.comb += o.valid.eq(i.valid & i.payload.data[0])",
-        ),
-        Bug("o.bad_only_at_end", "o.payload.data.eq(octet)", "o.payload.eq(Cat(octet, 0, i.payload.bad))"),
-        Bug(
-            "holds",
-            "m.d.comb += o.valid.eq(i.valid)",
-            "m.d.comb += [o.valid.eq(i.valid), i.ready.eq(o.ready)]",
-        ),
+        Bug("o.steady", HEADER, HEADER.replace("(i.valid)", "(i.valid & i.payload.data[0])")),
+        Bug("o.bad_only_at_end", HEADER, HEADER.replace("]", ", o.payload.bad.eq(i.payload.bad)]")),
+        Bug("holds", HEADER, HEADER.replace("]", ", i.ready.eq(o.ready)]")),
         Bug(
             "header", "m.d.sync += at.eq(at + 1)\n        return", "m.d.sync += at.eq(at + 2)\n        return"
         ),
