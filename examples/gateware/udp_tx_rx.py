@@ -14,7 +14,7 @@ from amaranth.lib import memory, wiring
 from amaranth.lib.cdc import ResetSynchronizer
 from amaranth.lib.wiring import In, Out
 
-from roslet.gateware.config import Config
+from roslet.gateware.config import Config, check_rx_udp_port
 from roslet.gateware.tops.ethernet_udp import EthernetUdp
 
 TEXT = b"UDP Send Test\n"
@@ -115,14 +115,17 @@ def number(text: str) -> int:
 class Design(wiring.Component):
     """The node ADDRESS with this user logic, at the pins of an FPGA: `clk` with `clk_hz`, the PHY's, and `led`.
 
-    It sends `rate` times a second. With `counters` the ports `drop_reason` and `drop_count` of the node are there.
+    It sends `rate` times a second. With `counters` the ports `drop_reason` and `drop_count` of the node are there. Raises
+    ValueError where PORT is one of those of RTPS.
     """
 
     def __init__(
         self, clk_hz: int = 100_000_000, rate: float = 1.0, phy: str = "mii", counters: bool = False
     ) -> None:
         self._clk_hz = clk_hz
-        self._node = EthernetUdp(Config(ros2clk_hz=clk_hz), phy, counters)
+        config = Config(ros2clk_hz=clk_hz)
+        check_rx_udp_port(PORT, domain=0, participant=config.target_participant_id)
+        self._node = EthernetUdp(config, phy, counters)
         self._user = UdpTxRx(round(clk_hz / rate), self._node.config.udp_txbuf_awidth)
         self.reasons = self._node.reasons
         pins = self._node.signature.members

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from scapy.layers.inet import ICMP, IP, UDP, fragment
+from scapy.layers.inet import ICMP, IP, UDP, defragment, fragment
 from scapy.layers.l2 import ARP, Ether
 from scapy.packet import Raw
 
@@ -68,6 +68,76 @@ def test_a_ping_of_more_than_the_memory_takes_is_dropped_and_counted(node: UdpNo
     assert node.ping(bytes(2953)) is None
     assert sum(node.drops().values()) > 0
     assert node.ping() is not None
+
+
+# at the pins, with scapy as the host
+
+
+def answers(node: UdpNode, *frames: bytes) -> list[Any]:
+    """What the node sends when these come, apart from its own texts and questions; every checksum is right."""
+    node.mii.receive()
+    for frame in frames:
+        node.mii.send(frame)
+    node.model.run(len(frames) * 0.00013 + 0.0003)
+    found = []
+    for frame in take(node.mii.receive()):
+        packet = Ether(frame)
+        if packet.dst != THEIR_MAC or (UDP in packet):
+            continue
+        for layer in (IP, ICMP):
+            if layer in packet and not packet[IP].flags.MF and not packet[IP].frag:
+                again = packet.copy()
+                del again[layer].chksum
+                assert Ether(bytes(again))[layer].chksum == packet[layer].chksum
+        found.append(packet)
+    return found
+
+
+def test_scapy_asks_by_arp_and_is_told() -> None:
+    with UdpNode(host=False) as node:
+        node.model.run(0.00004)
+        question = ARP(op="who-has", hwsrc=THEIR_MAC, psrc=THEIRS, pdst=OURS)
+        (reply,) = answers(node, ether(question, "ff:ff:ff:ff:ff:ff"))
+        assert (reply.src, reply.dst) == (OUR_MAC, THEIR_MAC)
+        told = reply[ARP]
+        assert (told.op, told.hwsrc, told.psrc, told.hwdst, told.pdst) == (
+            2,
+            OUR_MAC,
+            OURS,
+            THEIR_MAC,
+            THEIRS,
+        )
+        # A probe is answered; a question for another's address is not.
+        assert (
+            len(
+                answers(
+                    node, ether(ARP(op=1, hwsrc=THEIR_MAC, psrc="0.0.0.0", pdst=OURS), "ff:ff:ff:ff:ff:ff")
+                )
+            )
+            == 1
+        )
+        assert (
+            answers(
+                node,
+                ether(ARP(op=1, hwsrc=THEIR_MAC, psrc=THEIRS, pdst="192.168.1.101"), "ff:ff:ff:ff:ff:ff"),
+            )
+            == []
+        )
+
+
+@pytest.mark.parametrize("size", [0, 1, 18, 19, 700, 1472, 1473, 2952])
+def test_scapy_pings_and_puts_the_reply_together(size: int) -> None:
+    with UdpNode(host=False) as node:
+        node.model.run(0.00004)
+        data = random.Random(size).randbytes(size)
+        request = IP(src=THEIRS, dst=OURS, id=77) / ICMP(type=8, id=5, seq=6) / Raw(data)
+        pieces = fragment(request, 1480)  # type: ignore[no-untyped-call]
+        got = answers(node, *(ether(piece) for piece in pieces))
+        (whole,) = defragment([packet[IP] for packet in got])  # type: ignore[no-untyped-call]
+        reply = IP(bytes(whole))[ICMP]
+        assert (reply.type, reply.id, reply.seq) == (0, 5, 6)
+        assert bytes(reply.payload)[:size] == data
+        assert max(len(packet[IP]) for packet in got) <= 1500
 
 
 # at the pins

@@ -7,6 +7,7 @@ import pathlib
 import runpy
 from typing import Any
 
+from roslet.cli.gateware_sim import dropped
 from roslet.engine.net.events import EchoReplied
 from roslet.engine.net.host import Host
 from roslet.sim.compile import build
@@ -76,15 +77,7 @@ class UdpNode:
 
     def drops(self) -> dict[str, int]:
         """What was dropped since the reset, by reason."""
-        found: dict[str, int] = {}
-        self.model.run(len(self.reasons) * 3 / 12.5e6)
-        for reason, number in self.reasons.items():
-            self.model.set("drop_reason", number)
-            self.model.run(2 / 12.5e6)
-            count = self.model.get("drop_count")
-            if count:
-                found[reason] = count
-        return found
+        return dropped(self.model, self.reasons)
 
 
 def take(frames: list[Any]) -> list[bytes]:
