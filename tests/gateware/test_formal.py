@@ -6,9 +6,17 @@ import pytest
 
 from gateware import formal
 from gateware.formal import Spec
-from gateware.proofs import arbiter, checksum, fifo, header, mac, raw_udp
+from gateware.proofs import arbiter, checksum, fifo, header, mac, raw_udp, reassembly
 
-SPECS = (*arbiter.SPECS, *header.SPECS, *checksum.SPECS, *fifo.SPECS, *mac.SPECS, *raw_udp.SPECS)
+SPECS = (
+    *arbiter.SPECS,
+    *header.SPECS,
+    *checksum.SPECS,
+    *fifo.SPECS,
+    *mac.SPECS,
+    *raw_udp.SPECS,
+    *reassembly.SPECS,
+)
 
 
 @pytest.mark.parametrize("spec", SPECS, ids=lambda spec: spec.__name__)

@@ -21,7 +21,8 @@ ETHERNET_TX = data.StructLayout({"destination": 48, "type": 16})
 IPV4_RX = data.StructLayout(
     {"mac": 48, "source": 32, "destination": 32, "protocol": 8, "length": 16, "group": 1}
 )
-"""Behind an IPv4 header, or several of fragments: `mac` and `source` sent it; `length` of what follows; `group` as above."""
+"""Behind an IPv4 header, or several of fragments: `mac` and `source` sent it; `length` of what follows, which a frame that
+ends badly may have less of, and none more; `group` as above."""
 
 IPV4_FRAGMENT = data.StructLayout(
     {**{name: field.shape for name, field in IPV4_RX}, "identification": 16, "offset": 13, "more": 1}
