@@ -294,6 +294,6 @@ def test_datagrams_go_by_their_destination_port_and_others_are_dropped_and_count
 
 @pytest.mark.filterwarnings("ignore::amaranth.hdl.UnusedElaboratable")
 def test_a_switch_without_outputs_is_refused() -> None:
-    with pytest.raises(ValueError, match="at least one output, not 0"):
+    with pytest.raises(ValueError, match="at least one output, and each a port, not 0"):
         PortSwitch(0)
     gc.collect()  # while the warning that it was never used is ignored

@@ -7,6 +7,8 @@ that eight bits of adder do for sixteen of sum.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
@@ -238,21 +240,22 @@ class UdpTx(wiring.Component):
 class PortSwitch(wiring.Component):
     """Gives each datagram to the output of its destination port.
 
-    Ports: `i`; `port0` .. `port{count-1}`, steady port numbers; `o0` .. `o{count-1}`. Of equal ports the first gets all.
+    Port n goes to output `outputs[n]`, or, where `outputs` is a number, to output n of so many. Ports: `i`; `port0` ..,
+    steady port numbers; `o0` ... Of equal ports the first gets all.
 
     Throughput one octet a cycle, without a register and without latency. A datagram to no such port is dropped whole, with
     no output waited for, and counted by `drop_port` if its end is good.
     """
 
-    def __init__(self, count: int) -> None:
-        if count < 1:
-            raise ValueError(f"a switch has at least one output, not {count}")
-        self._count = count
+    def __init__(self, outputs: int | Sequence[int]) -> None:
+        self._outputs = list(range(outputs)) if isinstance(outputs, int) else list(outputs)
+        if sorted(set(self._outputs)) != list(range(max(self._outputs, default=-1) + 1)) or not self._outputs:
+            raise ValueError(f"a switch has at least one output, and each a port, not {outputs}")
         super().__init__(
             {
                 "i": In(FrameSignature(UDP_RX)),
-                **{f"port{n}": In(16) for n in range(count)},
-                **{f"o{n}": Out(FrameSignature(UDP_RX)) for n in range(count)},
+                **{f"port{n}": In(16) for n in range(len(self._outputs))},
+                **{f"o{n}": Out(FrameSignature(UDP_RX)) for n in set(self._outputs)},
                 "drop_port": Out(1),
             }
         )
@@ -260,15 +263,15 @@ class PortSwitch(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         i = self.i.stream
-        for n in range(self._count):
+        taken: Value = C(0)  # by an output before
+        for n in sorted(set(self._outputs)):
             o = getattr(self, f"o{n}")
-            m.d.comb += [o.stream.payload.eq(i.payload), o.meta.eq(self.i.meta)]
-        with m.If(self.i.meta.destination_port == self.port0):
-            m.d.comb += [self.o0.stream.valid.eq(i.valid), i.ready.eq(self.o0.stream.ready)]
-        for n in range(1, self._count):
-            o = getattr(self, f"o{n}")
-            with m.Elif(self.i.meta.destination_port == getattr(self, f"port{n}")):
-                m.d.comb += [o.stream.valid.eq(i.valid), i.ready.eq(o.stream.ready)]
-        with m.Else():  # DROP, as long as the port is what it is
+            ports = [getattr(self, f"port{k}") for k, output in enumerate(self._outputs) if output == n]
+            here = Cat(self.i.meta.destination_port == port for port in ports).any() & ~taken
+            m.d.comb += [o.stream.payload.eq(i.payload), o.meta.eq(self.i.meta), o.stream.valid.eq(i.valid & here)]
+            with m.If(here):
+                m.d.comb += i.ready.eq(o.stream.ready)
+            taken = taken | here
+        with m.If(~taken):  # DROP, as long as the port is what it is
             m.d.comb += [i.ready.eq(1), self.drop_port.eq(i.valid & i.payload.end & ~i.payload.bad)]
         return m

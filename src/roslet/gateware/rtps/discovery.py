@@ -1,0 +1,371 @@
+"""Who is there, and which of their endpoints match ours: SPDP and SEDP. RTPS 2.3, 8.5.3, 8.5.4; DDS 1.4, 2.2.3 (matching)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out, connect, flipped
+
+from roslet.gateware.meta import ADDRESSES
+from roslet.gateware.rtps import ports, tables
+from roslet.gateware.rtps.parameters import Parameters
+from roslet.gateware.rtps.ports import DISCOVERY, ReadSignature, WriteSignature
+from roslet.gateware.rtps.scan import find_endpoint
+from roslet.gateware.rtps.tables import MAX_HISTORY, OwnMap, PeerMap
+from roslet.gateware.words import MessageSignature
+from roslet.wire.rtps.qos import TRANSIENT_LOCAL, VOLATILE
+
+
+class Discovery(wiring.Component):
+    """The table of participants, and that of their endpoints that match ours.
+
+    Ports: `i`, parameter lists (`Submessages`); `alive` and `matched`, a bit for each participant and user proxy there is;
+    `peers`, `own`, read ports, and `write`; `addresses`, `domain`, ours; `heard` with `heard_slot`, a sign of life; `tick`,
+    high for a cycle each second; `hold` and `idle`, of the walker, which waits while leases are looked at; `due` with
+    `due_proxy`, something must be sent for it; `greet` with `greet_slot`, this participant must hear of us, as it is new.
+
+    - A participant that announces itself has the first free slot, with proxies of its discovery endpoints, from which all
+      is wanted and to which all is sent. Its next announcements move it. It goes, and its endpoints with it, when it says
+      so or when nothing good was heard of it for its lease, and a second or two.
+    - An endpoint whose topic and type are one of ours, and whose QoS agrees, gets a proxy; one that we know moves, or goes where
+      it agrees no more. It goes when it is disposed. Our endpoints' QoS other than reliability and durability are the defaults.
+
+    Nobody alive makes room for somebody new. Good, and dropped: `drop_full`, no free slot or proxy; `drop_incomplete`, what
+    makes a participant or endpoint is not all there; `drop_refused`, another domain; `drop_qos`, the topic and type are ours, and
+    the QoS does not agree; and `drop_malformed` of `Parameters`.
+    """
+
+    def __init__(self, peers: PeerMap, own: OwnMap) -> None:
+        self._peers, self._own = peers, own
+        self._parameters = Parameters(peers, own)
+        super().__init__(
+            {
+                "i": In(MessageSignature(DISCOVERY)),
+                "alive": Out(peers.participants),
+                "matched": Out(peers.endpoints),
+                "peers": Out(ReadSignature(peers.address_bits)),
+                "own": Out(ReadSignature(own.address_bits)),
+                "write": Out(WriteSignature(peers.address_bits)),
+                "addresses": In(ADDRESSES),
+                "domain": In(8),
+                "heard": In(1),
+                "heard_slot": In(8),
+                "tick": In(1),
+                "hold": Out(1),
+                "idle": In(1),
+                "due": Out(1),
+                "due_proxy": Out(range(peers.proxies)),
+                "greet": Out(1),
+                "greet_slot": Out(8),
+                **{f"drop_{name}": Out(1) for name in ("full", "incomplete", "refused", "qos", "malformed")},
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        peers = self._peers
+        m.submodules.parameters = parameters = self._parameters
+        connect(m, flipped(self.i), parameters.i)
+        read, meta = parameters.read, self.i.meta
+        is_participant = meta.kind == ports.PARTICIPANTS
+
+        slot = Signal(8)
+        endpoint = Signal(range(peers.endpoints))
+        found = Signal()
+        info = Signal(32)
+        entity = Signal(32)
+        step = Signal(range(max(16, peers.endpoints + 2)))
+        before = Signal.like(step)
+        heard = Signal(peers.participants)
+        ticked, sweeping = Signal(), Signal()
+        local, agreed = Signal(max(1, self._own.local_bits)), Signal()
+        m.d.sync += before.eq(step)
+        with m.If(self.tick):
+            m.d.sync += ticked.eq(1)
+        with m.If(self.heard):
+            m.d.sync += heard.bit_select(self.heard_slot, 1).eq(1)
+        m.d.comb += [
+            parameters.addresses.eq(self.addresses),
+            parameters.domain.eq(self.domain),
+            self.drop_malformed.eq(parameters.drop_malformed),
+            parameters.own.data.eq(self.own.data),
+            parameters.peers.data.eq(self.peers.data),
+            self.greet_slot.eq(slot),
+        ]
+        address, own_address = Signal(peers.address_bits), Signal(self._own.address_bits)
+        put, put_at, put_data = Signal(), Signal(peers.address_bits), Signal(32)
+        m.d.comb += [
+            self.peers.addr.eq(address | parameters.peers.addr),
+            self.own.addr.eq(own_address | parameters.own.addr),
+            self.write.en.eq(put | parameters.write.en),
+            self.write.addr.eq(put_at | parameters.write.addr),
+            self.write.data.eq(put_data | parameters.write.data),
+        ]
+
+        def write(target: Value, value: Value | int) -> None:
+            m.d.comb += [put.eq(1), put_at.eq(target), put_data.eq(value)]
+
+        def free(bits: Value) -> Value:
+            """The number of the first that is low, and whether there is any."""
+            number: Value = C(0, max(1, (len(bits) - 1).bit_length()))
+            for n in reversed(range(len(bits))):
+                number = Mux(~bits[n], n, number)
+            return number
+
+        class _Port:
+            """What `find_endpoint` reads by."""
+
+            addr = address
+            data = self.peers.data
+
+        port: Any = _Port
+        with m.FSM() as fsm:
+            m.d.comb += self.hold.eq((fsm.ongoing("IDLE") & ticked) | sweeping)
+            with m.State("IDLE"):
+                m.d.sync += [
+                    found.eq(0),
+                    step.eq(0),
+                    slot.eq(meta.slot),
+                    entity.eq(read.entity),
+                ]
+                with m.If(ticked & self.idle):
+                    m.d.sync += [ticked.eq(0), sweeping.eq(1), slot.eq(0)]
+                    m.next = "SWEEP"
+                with m.Elif(parameters.done & is_participant):
+                    m.next = "PARTICIPANT"
+                with m.Elif(parameters.done):
+                    m.next = "ENTITY"
+                    m.d.comb += address.eq(peers.scratch(tables.SCRATCH_ENTITY))
+            with m.State("PROCEED"):
+                m.d.comb += parameters.proceed.eq(1)
+                m.next = "IDLE"
+            self._participant(m, read, write, address, slot, step, before, heard, free)
+            with m.State("ENTITY"):
+                m.next = "SCAN"
+                with m.If(~read.guid):
+                    m.d.sync += entity.eq(self.peers.data)
+                    with m.If(~(meta.gone & meta.has_key)):
+                        m.d.comb += self.drop_incomplete.eq(1)
+                        m.next = "PROCEED"
+            find_endpoint(
+                m,
+                peers,
+                port,
+                self.matched,
+                entity,
+                meta.slot,
+                meta.kind == ports.PUBLICATIONS,
+                endpoint,
+                info,
+                found,
+                "ENDPOINT",
+            )
+            self._endpoint(m, read, write, address, own_address, slot, endpoint, found, entity, step, local, agreed, free)
+            # -- who is silent
+            with m.State("SWEEP"):
+                m.d.comb += address.eq(peers.participant(slot, tables.LEASE))
+                m.d.sync += step.eq(0)
+                with m.If(slot == peers.participants):
+                    m.d.sync += sweeping.eq(0)
+                    m.next = "IDLE"
+                with m.Elif(~self.alive.bit_select(slot, 1)):
+                    m.d.sync += slot.eq(slot + 1)
+                with m.Else():
+                    m.next = "LEASE"
+            with m.State("LEASE"):
+                m.d.comb += address.eq(peers.participant(slot, tables.LEFT))
+                m.next = "LEFT"
+                with m.If(heard.bit_select(slot, 1)):
+                    m.d.sync += [heard.bit_select(slot, 1).eq(0), slot.eq(slot + 1)]
+                    write(peers.participant(slot, tables.LEFT), self.peers.data)
+                    m.next = "SWEEP"
+            with m.State("LEFT"):
+                left = self.peers.data[:17]
+                m.next = "REMOVE"
+                with m.If(left != 0):
+                    write(peers.participant(slot, tables.LEFT), left - 1)
+                    m.d.sync += slot.eq(slot + 1)
+                    m.next = "SWEEP"
+            with m.State("REMOVE"):  # the participant, and each of its endpoints
+                m.d.comb += address.eq(peers.endpoint(step, tables.INFO))
+                m.d.sync += [step.eq(step + 1), self.alive.bit_select(slot, 1).eq(0)]
+                with m.If((step != 0) & (self.peers.data[tables.INFO_SLOT : tables.INFO_SLOT + 8] == slot)):
+                    m.d.sync += self.matched.bit_select(before, 1).eq(0)
+                with m.If(step == peers.endpoints):
+                    m.next = "PROCEED"
+                    with m.If(sweeping):
+                        m.d.sync += slot.eq(slot + 1)
+                        m.next = "SWEEP"
+        return m
+
+    def _participant(
+        self, m: Module, read: Any, write: Any, address: Value, slot: Value, step: Value, before: Value, heard: Value, free: Any
+    ) -> None:
+        peers, meta = self._peers, self.i.meta
+        fresh = Signal()
+        with m.State("PARTICIPANT"):
+            m.d.sync += [step.eq(0), fresh.eq(~meta.known)]
+            m.next = "PROCEED"
+            with m.If(meta.gone):
+                with m.If(meta.known):
+                    m.next = "REMOVE"
+            with m.Elif(read.refused):
+                m.d.comb += self.drop_refused.eq(1)
+            with m.Elif(~read.guid | ~read.meta):
+                m.d.comb += self.drop_incomplete.eq(1)
+            with m.Elif(~meta.known & self.alive.all()):
+                m.d.comb += self.drop_full.eq(1)
+            with m.Else():
+                m.next = "COPY"
+                with m.If(~meta.known):
+                    m.d.sync += slot.eq(free(self.alive))
+        with m.State("COPY"):  # the scratch area, a word behind
+            source = Signal(4)
+            m.d.comb += source.eq(step)
+            with m.If(~read.user & ((step == tables.USER_IP) | (step == tables.USER_PORT))):
+                m.d.comb += source.eq(step - tables.USER_IP + tables.META_IP)
+            m.d.comb += address.eq(peers.scratch(source))
+            m.d.sync += step.eq(step + 1)
+            with m.If(step != 0):
+                write(
+                    peers.participant(slot, before),
+                    Mux(before >= tables.LEASE, read.lease + 1, self.peers.data),
+                )
+            with m.If(step == tables.LEFT + 1):
+                m.d.sync += [step.eq(0), self.alive.bit_select(slot, 1).eq(1), heard.bit_select(slot, 1).eq(1)]
+                m.next = "PROCEED"
+                with m.If(fresh):
+                    m.d.comb += self.greet.eq(1)
+                    m.next = "BUILTINS"
+        with m.State("BUILTINS"):  # the last four words of each proxy
+            kind, word = step[2:4], Cat(step[:2], C(1, 1))
+            value = Mux(
+                kind[1],
+                word == tables.NEXT_LO,
+                Mux(word == tables.ASK_TO, tables.EVERYTHING, word == tables.ASK_FROM),
+            )
+            write(peers.builtin(slot, kind, word), value)
+            m.d.comb += [self.due.eq(step[:2] == 3), self.due_proxy.eq(Cat(kind, slot))]
+            m.d.sync += step.eq(step + 1)
+            with m.If(step[:4] == 15):
+                m.next = "PROCEED"
+
+    def _endpoint(
+        self,
+        m: Module,
+        read: Any,
+        write: Any,
+        address: Value,
+        own_address: Value,
+        slot: Value,
+        endpoint: Value,
+        found: Value,
+        entity: Value,
+        step: Value,
+        local: Value,
+        agreed: Value,
+        free: Any,
+    ) -> None:
+        peers, meta, own = self._peers, self.i.meta, self._own
+        is_writer = meta.kind == ports.PUBLICATIONS
+        same = self._parameters.same
+        # What each of ours has to say to its QoS: a peer's reader must not ask for more than our writer offers, and so on.
+        agree = Signal(len(same))
+        for n in range(len(same)):
+            fits: list[Value] = []  # to our reader, to our writer
+            for table, offered in ((own.readers, True), (own.writers, False)):
+                if n >= len(table):
+                    fits.append(C(0))
+                    continue
+                reliable_here, transient_here = table[n].reliable, table[n].transient_local
+                if offered:
+                    durable = (read.durability != VOLATILE) | C(not transient_here, 1)
+                    fits.append((read.reliable | C(not reliable_here, 1)) & durable)
+                else:
+                    durable = (read.durability == VOLATILE) | (
+                        (read.durability == TRANSIENT_LOCAL) & C(transient_here, 1)
+                    )
+                    fits.append((~read.reliable | C(reliable_here, 1)) & durable)
+            m.d.comb += agree[n].eq(Mux(is_writer, fits[0], fits[1]) & ~read.refused)
+        transient = Signal()  # it gets, or gives, what was there before it
+        reliable = Signal()
+        ip, port, last = Signal(32), Signal(32), Signal(32)
+        with m.State("ENDPOINT"):
+            m.d.sync += step.eq(0)
+            for n in reversed(range(len(same))):
+                with m.If(same[n]):
+                    ours = [table[n] if n < len(table) else None for table in (own.writers, own.readers)]
+                    flags = [
+                        (C(bool(one and one.reliable), 1), C(bool(one and one.transient_local), 1)) for one in ours
+                    ]
+                    m.d.sync += [
+                        local.eq(n),
+                        reliable.eq(read.reliable & Mux(is_writer, flags[1][0], flags[0][0])),
+                        transient.eq(
+                            (read.durability != VOLATILE) & Mux(is_writer, flags[1][1], flags[0][1])
+                        ),
+                        agreed.eq(agree[n]),
+                    ]
+            m.next = "PROCEED"
+            with m.If(meta.gone):
+                with m.If(found):
+                    m.d.sync += self.matched.bit_select(endpoint, 1).eq(0)
+            with m.Elif(~read.guid | ~read.topic | ~read.type):
+                m.d.comb += self.drop_incomplete.eq(1)
+            with m.Elif(same.any()):
+                m.next = "MATCH"
+            with m.Elif(found):
+                m.d.sync += self.matched.bit_select(endpoint, 1).eq(0)
+        with m.State("MATCH"):
+            m.next = "PROCEED"
+            where = Mux(read.user, peers.scratch(tables.USER_IP), peers.participant(slot, tables.USER_IP))
+            m.d.comb += address.eq(where)
+            with m.If(~agreed):
+                m.d.comb += self.drop_qos.eq(1)
+                with m.If(found):
+                    m.d.sync += self.matched.bit_select(endpoint, 1).eq(0)
+            with m.Elif(~found & self.matched.all()):
+                m.d.comb += self.drop_full.eq(1)
+            with m.Else():
+                m.next = "WHERE"
+                with m.If(~found):
+                    m.d.sync += endpoint.eq(free(self.matched))
+        with m.State("WHERE"):
+            m.d.comb += address.eq(
+                Mux(read.user, peers.scratch(tables.USER_PORT), peers.participant(slot, tables.USER_PORT))
+            )
+            m.d.comb += own_address.eq(own.writer(local, tables.WRITER_LAST))
+            m.d.sync += ip.eq(self.peers.data)
+            m.next = "WHERE PORT"
+        with m.State("WHERE PORT"):
+            m.d.sync += [port.eq(self.peers.data), last.eq(self.own.data)]
+            m.next = "PROXY"
+        with m.State("PROXY"):
+            # Before all that is kept, where it gets what was before it: numbers are compared by their difference.
+            first = Mux(transient, last - MAX_HISTORY, last + 1)
+            words = [
+                entity,
+                Cat(slot, local, C(0, 8 - len(local)), is_writer, reliable),
+                ip,
+                port,
+                Mux(is_writer, transient, first),  # NEXT_LO, ACKED
+                Mux(is_writer, 0, Mux(transient, first - 1, first)),  # NEXT_HI, ASK_FROM: no GAP for what was before
+                Mux(is_writer, 0, last),  # LAST, ASK_TO
+                Mux(is_writer, 0, first),  # START
+            ]
+            with m.Switch(step[:3]):
+                for n, value in enumerate(words):
+                    with m.Case(n):
+                        write(peers.endpoint(endpoint, n), value)
+            m.d.sync += step.eq(step + 1)
+            with m.If((step[:3] == tables.PORT) & found):
+                m.next = "PROCEED"  # it has only moved
+            with m.If(step[:3] == len(words) - 1):
+                m.d.sync += self.matched.bit_select(endpoint, 1).eq(1)
+                m.d.comb += [
+                    self.due.eq(1),
+                    self.due_proxy.eq(tables.BUILTINS * peers.participants + endpoint),
+                ]
+                m.next = "PROCEED"

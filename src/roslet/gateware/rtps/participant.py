@@ -1,0 +1,212 @@
+"""A participant: RTPS between UDP and the user's messages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from amaranth.hdl import Cat, Module
+from amaranth.lib import memory, wiring
+from amaranth.lib.wiring import In, Out, connect, flipped
+
+from roslet.gateware.meta import ADDRESSES, UDP_RX, UDP_TX, LookupSignature
+from roslet.gateware.rtps.composer import Composer
+from roslet.gateware.rtps.discovery import Discovery
+from roslet.gateware.rtps.outbox import HEADER, Outbox
+from roslet.gateware.rtps.ports import USER
+from roslet.gateware.rtps.queue import DatagramQueue
+from roslet.gateware.rtps.rom import Rom
+from roslet.gateware.rtps.sender import Sender
+from roslet.gateware.rtps.submessages import Submessages
+from roslet.gateware.rtps.tables import Local, OwnMap, PeerMap
+from roslet.gateware.rtps.walker import Walker
+from roslet.gateware.stream import FrameSignature
+from roslet.gateware.words import MessageSignature
+
+
+class Participant(wiring.Component):
+    """A participant with fixed writers and readers.
+
+    writers, readers    the user's, in the order of their numbers; `kept` are further writers, whose only message is there from
+                        the beginning: its octets, without the encapsulation header
+    prefix              our GUID prefix
+    address, ports      ours, of discovery and of the user's messages
+    domain              its number
+    participants, endpoints
+                        how many others, and how many of their endpoints that match ours, are known at once
+    longest             octets of the longest datagram that is received
+    lease               seconds, which peers are told
+
+    Ports: `udp_rx` and `udp_tx`, data of datagrams, `lookup`; `publish0` .., messages; `receive0` ..,
+    messages, with what is known of them; `room`, a bit for each reader, as `Submessages` has it; `addresses`; `tick`, `announce`,
+    `sweep`, high for a cycle each second, when we shall be announced, and when readers shall be reminded; `drop_<block>_<reason>`.
+    """
+
+    def __init__(
+        self,
+        writers: Sequence[Local],
+        readers: Sequence[Local],
+        prefix: bytes,
+        address: bytes,
+        ports: tuple[int, int, int],
+        domain: int,
+        kept: Sequence[tuple[Local, bytes]] = (),
+        participants: int = 8,
+        endpoints: int = 16,
+        longest: int = 2952,
+        lease: float = 20.0,
+    ) -> None:
+        self._peers = peers = PeerMap(participants, endpoints)
+        self._own = own = OwnMap([*writers, *(local for local, _ in kept)], readers)
+        self._domain = domain
+        self.group_port, self._meta_port, user_port = ports
+        self._init = own.init(prefix, address, self._meta_port, user_port)
+        for n, (local, octets) in enumerate(kept, len(writers)):
+            words = [int.from_bytes(octets[at : at + 4], "little") for at in range(0, len(octets), 4)]
+            at = own.samples[n] + own.stride(local) * (1 % local.depth)
+            self._init[at : at + 1 + len(words)] = [len(words) | (-len(octets) % 4) << 16, *words]
+            self._init[own.writer_address(n, 0)] = self._init[own.writer_address(n, 2)] = 1
+        self._rom = Rom(own, domain, lease)
+        most = 4 * max(self._rom.size[name] for name in self._rom.size)
+        most += 4 * max((local.words for local in own.writers), default=0)
+        depth = 512
+        while depth < 2 * (HEADER + most // 4 + 1):
+            depth *= 2
+        self._users, self._readers = len(writers), len(readers)
+        self._blocks: dict[str, Any] = {
+            "queue": DatagramQueue(longest),
+            "walker": Walker(peers, own),
+            "submessages": Submessages(peers, own),
+            "discovery": Discovery(peers, own),
+            "sender": Sender(self._rom, peers, own, len(writers)),
+            "outbox": Outbox(most, depth),
+        }
+        self.drops = [
+            (block, name)
+            for block, component in self._blocks.items()
+            for name in component.signature.members
+            if name.startswith("drop_")
+        ]
+        super().__init__(
+            {
+                "udp_rx": In(FrameSignature(UDP_RX)),
+                "udp_tx": Out(FrameSignature(UDP_TX)),
+                "lookup": Out(LookupSignature()),
+                **{f"publish{n}": In(MessageSignature()) for n in range(len(writers))},
+                **{f"receive{n}": Out(MessageSignature(USER)) for n in range(len(readers))},
+                "room": In(max(1, len(readers))),
+                "addresses": In(ADDRESSES),
+                "tick": In(1),
+                "announce": In(1),
+                "sweep": In(1),
+                "alive": Out(participants),
+                "matched": Out(endpoints),
+                **{self.drop_name(block, name): Out(1) for block, name in self.drops},
+            }
+        )
+
+    @staticmethod
+    def drop_name(block: str, name: str) -> str:
+        """The port for the output `drop_<reason>` of a block."""
+        return f"drop_{block}_{name.removeprefix('drop_')}"
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        for name, block in self._blocks.items():
+            m.submodules[name] = block
+        for block, name in self.drops:
+            m.d.comb += getattr(self, self.drop_name(block, name)).eq(getattr(self._blocks[block], name))
+        blocks = self._blocks
+        queue, walker, submessages = blocks["queue"], blocks["walker"], blocks["submessages"]
+        discovery, sender, outbox = blocks["discovery"], blocks["sender"], blocks["outbox"]
+        m.submodules.composer = composer = Composer(self._rom, self._peers, self._own)
+
+        connect(m, flipped(self.udp_rx), queue.i)
+        connect(m, queue.o, walker.i)
+        connect(m, walker.o, submessages.i)
+        connect(m, submessages.discovery, discovery.i)
+        connect(m, outbox.o, flipped(self.udp_tx))
+        connect(m, outbox.lookup, flipped(self.lookup))
+        for n in range(self._users):
+            connect(m, flipped(getattr(self, f"publish{n}")), getattr(sender, f"publish{n}"))
+        user = submessages.user
+        for n in range(self._readers):
+            receive = getattr(self, f"receive{n}")
+            m.d.comb += [receive.stream.payload.eq(user.stream.payload), receive.meta.eq(user.meta)]
+            with m.If(user.meta.reader == n):
+                m.d.comb += [receive.stream.valid.eq(user.stream.valid), user.stream.ready.eq(receive.stream.ready)]
+        m.d.comb += [
+            walker.known.eq(queue.known),
+            walker.good.eq(queue.good),
+            walker.alive.eq(discovery.alive),
+            walker.hold.eq(discovery.hold),
+            discovery.idle.eq(walker.idle),
+            discovery.heard.eq(walker.heard),
+            discovery.heard_slot.eq(walker.heard_slot),
+            discovery.addresses.eq(self.addresses),
+            discovery.domain.eq(self._domain),
+            discovery.tick.eq(self.tick),
+            submessages.room.eq(self.room),
+            *(block.alive.eq(discovery.alive) for block in (submessages, sender)),
+            *(block.matched.eq(discovery.matched) for block in (submessages, sender)),
+            sender.due0.en.eq(discovery.due),
+            sender.due0.proxy.eq(discovery.due_proxy),
+            sender.due1.en.eq(submessages.due),
+            sender.due1.proxy.eq(submessages.due_proxy),
+            sender.greet.eq(discovery.greet),
+            sender.greet_slot.eq(discovery.greet_slot),
+            sender.announce.eq(self.announce),
+            sender.sweep.eq(self.sweep),
+            sender.group_port.eq(self.group_port),
+            composer.at.eq(sender.template),
+            composer.start.eq(sender.start),
+            composer.registers.eq(sender.registers),
+            composer.subject.eq(sender.subject),
+            sender.done.eq(composer.done),
+            sender.room.eq(outbox.room),
+            sender.busy.eq(outbox.busy),
+            outbox.push.eq(composer.push),
+            outbox.word.eq(composer.word),
+            outbox.finish.eq(sender.finish),
+            outbox.ip.eq(sender.ip),
+            outbox.port.eq(sender.port),
+            outbox.source_port.eq(self._meta_port),
+            self.alive.eq(discovery.alive),
+            self.matched.eq(discovery.matched),
+        ]
+        self._memories(m, composer)
+        return m
+
+    def _memories(self, m: Module, composer: Any) -> None:
+        """Who is received writes of peers, who sends of ourselves; both read both."""
+        blocks = self._blocks
+        m.submodules.peers = peers = memory.Memory(shape=32, depth=self._peers.depth, init=[])
+        m.submodules.own = own = memory.Memory(shape=32, depth=self._own.depth, init=self._init)
+        walker, submessages, discovery, sender = (
+            blocks[name] for name in ("walker", "submessages", "discovery", "sender")
+        )
+        receiving, sending = (walker, submessages, discovery), (sender, composer)
+        for group in (receiving, sending):
+            for mem, name in ((peers, "peers"), (own, "own")):
+                users = [getattr(block, name) for block in group if name in block.signature.members]
+                read = mem.read_port()
+                m.d.comb += read.addr.eq(_either(user.addr for user in users))
+                m.d.comb += [user.data.eq(read.data) for user in users]
+        for mem, writers in (
+            (peers, (walker.source, submessages.write, discovery.write)),
+            (own, (sender.write,)),
+        ):
+            write = mem.write_port()
+            m.d.comb += [
+                write.en.eq(Cat(writer.en for writer in writers).any()),
+                write.addr.eq(_either(writer.addr for writer in writers)),
+                write.data.eq(_either(writer.data for writer in writers)),
+            ]
+
+
+def _either(values: Any) -> Any:
+    """All of them but one are zero."""
+    found = 0
+    for value in values:
+        found = value | found
+    return found

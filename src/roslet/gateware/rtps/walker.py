@@ -1,0 +1,271 @@
+"""The walk over the submessages of a message. RTPS 2.3, 8.3.4 (rules), 9.4.4, 9.4.5.1 (octets)."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Cat, Module, Mux, Signal, Value
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from roslet.gateware.rtps.ports import SUBMESSAGE, ReadSignature, WriteSignature
+from roslet.gateware.rtps.tables import OWN_PREFIX, PREFIX, SCRATCH_SOURCE, OwnMap, PeerMap
+from roslet.gateware.words import MessageSignature
+from roslet.wire.rtps import header, submessage
+from roslet.wire.rtps.guid import PROTOCOLVERSION_MAJOR
+
+FORWARDED = (submessage.DATA, submessage.HEARTBEAT, submessage.ACKNACK, submessage.GAP)
+FRAGMENTS = (submessage.DATA_FRAG, submessage.HEARTBEAT_FRAG, submessage.NACK_FRAG)
+
+_PREFIX_WORDS = 3
+_RTPS = int.from_bytes(header.PROTOCOL_RTPS, "little")
+_INFO_SRC_BEFORE = 2
+"""Words of INFO_SRC before the prefix: unused, version and vendor."""
+_INFO_SRC_WORDS = _INFO_SRC_BEFORE + _PREFIX_WORDS
+
+
+class Walker(wiring.Component):
+    """Takes messages apart: gives the bodies of the submessages that are for us, one after another.
+
+    Ports: `i`, messages; `known` and `good`, the verdict on the one that `i` gives (`DatagramQueue`); `o`, the words of a
+    body, never more than its length says, and an end, with what its header says beside it; `alive`, which participants are
+    known; `peers` and `own`, read ports; `source`, writes the sender's GUID prefix into the scratch area; `heard` is high for a
+    cycle when something good came from participant `heard_slot`. `hold` keeps the next message waiting, and `idle` is high
+    while none is taken.
+
+    What is given are DATA, HEARTBEAT, ACKNACK and GAP, of messages to all or, by INFO_DST, to us. A good end is given only
+    once it is known that the whole datagram is good: who has acted upon it need take nothing back. Where the datagram is bad,
+    or ends within a submessage, so does the body.
+
+    Throughput one word a cycle; a sender's prefix, and every INFO_SRC, takes 3 * (participants + 2) cycles.
+
+    Of good datagrams `drop_not_rtps`, `drop_version` (not 2.x), `drop_truncated` (ends within the header, or within a
+    submessage by its length) drop what follows, as 8.3.4.1 has it; `drop_fragment` counts submessages that carry fragments.
+    """
+
+    def __init__(self, peers: PeerMap, own: OwnMap) -> None:
+        self._peers, self._own = peers, own
+        super().__init__(
+            {
+                "i": In(MessageSignature()),
+                "known": In(1),
+                "good": In(1),
+                "o": Out(MessageSignature(SUBMESSAGE)),
+                "alive": In(peers.participants),
+                "peers": Out(ReadSignature(peers.address_bits)),
+                "own": Out(ReadSignature(own.address_bits)),
+                "source": Out(WriteSignature(peers.address_bits)),
+                "heard": Out(1),
+                "heard_slot": Out(8),
+                "hold": In(1),
+                "idle": Out(1),
+                "drop_not_rtps": Out(1),
+                "drop_version": Out(1),
+                "drop_truncated": Out(1),
+                "drop_fragment": Out(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        i, o = self.i.stream, self.o.stream
+        word = i.payload.data
+        came = Signal()  # a word, not the end
+        m.d.comb += came.eq(i.valid & ~i.payload.end)
+
+        kind, flags = Signal(8), Signal(8)
+        left = Signal(14)  # words of the submessage
+        to_end = Signal()  # it goes to the end of the message
+        tail = Signal(2)  # octets by which its length misses whole words
+        for_us = Signal()
+        slot, is_known = Signal(8), Signal()
+        at = Signal(2)  # of the three words of a prefix
+        m.d.comb += [
+            self.o.meta.id.eq(kind),
+            self.o.meta.flags.eq(flags),
+            self.o.meta.known.eq(is_known),
+            self.o.meta.slot.eq(slot),
+            o.payload.data.eq(word),
+            self.heard_slot.eq(slot),
+        ]
+
+        with m.FSM() as fsm:
+            m.d.comb += self.idle.eq(fsm.ongoing("START"))
+            with m.State("START"):
+                m.d.sync += [for_us.eq(1), at.eq(0), left.eq(0), to_end.eq(0)]
+                with m.If(i.valid & ~self.hold):
+                    m.next = "PROTOCOL"
+            with m.State("PROTOCOL"):
+                with m.If(i.valid & i.payload.end):
+                    m.next = "SHORT"
+                with m.Elif(i.valid):
+                    m.d.comb += i.ready.eq(1)
+                    m.next = "VERSION"
+                    with m.If(word != _RTPS):
+                        m.next = "NOT RTPS"
+            with m.State("VERSION"):
+                with m.If(i.valid & i.payload.end):
+                    m.next = "SHORT"
+                with m.Elif(i.valid):
+                    m.d.comb += i.ready.eq(1)
+                    m.next = "PREFIX"
+                    with m.If(word[:8] != PROTOCOLVERSION_MAJOR):
+                        m.next = "OTHER VERSION"
+            self._prefix(m, word, came, at, slot, is_known)
+            with m.State("SUBMESSAGE"):
+                little = word[8]
+                length = Mux(little, word[16:32], Cat(word[24:32], word[16:24]))
+                m.d.sync += at.eq(0)
+                with m.If(i.valid & i.payload.end):
+                    m.next = "END"
+                with m.Elif(i.valid):
+                    m.d.comb += i.ready.eq(1)
+                    m.d.sync += [
+                        kind.eq(word[:8]),
+                        flags.eq(word[8:16]),
+                        left.eq((length + 3)[2:]),
+                        tail.eq(-length[:2]),
+                        to_end.eq(length == 0),
+                    ]
+                    m.next = "SKIP"
+                    with m.Switch(word[:8]):
+                        with m.Case(submessage.INFO_DST):
+                            m.next = "DESTINATION"
+                        with m.Case(submessage.INFO_SRC):
+                            m.next = "SOURCE"
+                        with m.Case(submessage.PAD, submessage.INFO_TS):
+                            m.d.sync += to_end.eq(0)
+                        with m.Case(*FORWARDED):
+                            with m.If(for_us):
+                                m.next = "BODY"
+                        with m.Case(*FRAGMENTS):
+                            m.d.comb += self.drop_fragment.eq(for_us)
+            with m.State("DESTINATION"):
+                with m.If((at == 0) & (left < _PREFIX_WORDS) & ~to_end):
+                    m.next = "SKIP"
+                with m.Else():
+                    self._compare_own(m, came, at, left, for_us)
+                    with m.If(i.valid & i.payload.end):
+                        m.next = "SHORT"
+            with m.State("SOURCE"):
+                with m.If((at == 0) & (left < _INFO_SRC_WORDS) & ~to_end):
+                    m.next = "SKIP"
+                with m.Elif(came):
+                    m.d.comb += i.ready.eq(1)
+                    m.d.sync += [left.eq(left - 1), at.eq(at + 1)]
+                    with m.If(at == _INFO_SRC_BEFORE - 1):
+                        m.d.sync += [at.eq(0), left.eq(left - 1 - _PREFIX_WORDS)]
+                        m.next = "PREFIX"
+                with m.If(i.valid & i.payload.end):
+                    m.next = "SHORT"
+            with m.State("BODY"):
+                ended = (left == 0) & ~to_end
+                with m.If(ended):
+                    m.next = "BODY END"
+                with m.Elif(i.valid & i.payload.end):
+                    m.next = "BODY END"
+                    with m.If(~to_end):
+                        m.next = "BODY SHORT"
+                with m.Else():
+                    m.d.comb += [o.valid.eq(i.valid), i.ready.eq(o.ready)]
+                    with m.If(i.valid & o.ready):
+                        m.d.sync += left.eq(left - 1)
+            with m.State("BODY END"):
+                padding = Mux(to_end, i.payload.padding, tail)
+                missing = ~to_end & i.payload.end & (i.payload.padding > tail)
+                settled = Signal()  # the item behind the body is there, which may be the end
+                m.d.comb += [
+                    settled.eq(self.known & i.valid),
+                    o.payload.end.eq(1),
+                    o.valid.eq(settled),
+                    o.payload.bad.eq(~self.good | missing),
+                    o.payload.padding.eq(Mux(o.payload.bad, 0, padding)),
+                    self.heard.eq(settled & o.ready & ~o.payload.bad & is_known),
+                ]
+                with m.If(settled & o.ready):
+                    m.next = "SUBMESSAGE"
+                    with m.If(o.payload.bad):
+                        m.next = "SHORT"
+            with m.State("BODY SHORT"):
+                m.d.comb += [o.payload.end.eq(1), o.payload.bad.eq(1), o.valid.eq(1)]
+                with m.If(o.ready):
+                    m.next = "SHORT"
+            with m.State("SKIP"):
+                with m.If((left == 0) & ~to_end):
+                    m.next = "SUBMESSAGE"
+                with m.Elif(i.valid & i.payload.end):
+                    m.next = "END"
+                    with m.If(~to_end):
+                        m.next = "SHORT"
+                with m.Elif(i.valid):
+                    m.d.comb += i.ready.eq(1)
+                    m.d.sync += left.eq(left - 1)
+            # DROP, by reason; and the ordinary end, where nothing is left to be dropped.
+            for state, reason in (
+                ("END", None),
+                ("SHORT", self.drop_truncated),
+                ("NOT RTPS", self.drop_not_rtps),
+                ("OTHER VERSION", self.drop_version),
+            ):
+                with m.State(state):
+                    m.d.comb += i.ready.eq(1)
+                    with m.If(i.valid & i.payload.end):
+                        if reason is not None:
+                            m.d.comb += reason.eq(~i.payload.bad)
+                        m.next = "START"
+        return m
+
+    def _prefix(self, m: Module, word: Value, came: Value, at: Value, slot: Value, is_known: Value) -> None:
+        """Compare each word of a prefix, as it stands there, with that of each participant."""
+        many = self._peers.participants
+        i = self.i.stream
+        step = Signal(range(many + 2))
+        shown = Signal.like(slot)  # whose word the memory gives
+        match = Signal(many)
+        with m.State("PREFIX"):
+            with m.If(i.valid & i.payload.end):
+                m.d.sync += step.eq(0)
+                m.next = "SHORT"
+            with m.Elif(came):
+                m.d.comb += self.peers.addr.eq(self._peers.participant(step, Cat(at, PREFIX)))
+                m.d.sync += [step.eq(step + 1), shown.eq(step)]
+                with m.If(step == 0):
+                    m.d.comb += [
+                        self.source.en.eq(1),
+                        self.source.addr.eq(self._peers.scratch((SCRATCH_SOURCE + at)[:4])),
+                        self.source.data.eq(word),
+                    ]
+                    with m.If(at == 0):
+                        m.d.sync += match.eq(self.alive)
+                with m.Else():
+                    for n in range(many):
+                        with m.If(shown == n):
+                            m.d.sync += match[n].eq(match[n] & (self.peers.data == word))
+                with m.If(step == many + 1):
+                    m.d.comb += i.ready.eq(1)
+                    m.d.sync += [step.eq(0), at.eq(at + 1)]
+                    with m.If(at == _PREFIX_WORDS - 1):
+                        m.d.sync += [is_known.eq(match.any()), slot.eq(_number(match)), at.eq(0)]
+                        m.next = "SKIP"
+
+    def _compare_own(self, m: Module, came: Value, at: Value, left: Value, for_us: Value) -> None:
+        """INFO_DST: our prefix, or none (GUIDPREFIX_UNKNOWN), which is everybody."""
+        ours, nobodys = Signal(init=1), Signal(init=1)
+        read = Signal()
+        word = self.i.stream.payload.data
+        m.d.comb += self.own.addr.eq(self._own.own(OWN_PREFIX) + at)
+        with m.If(came & ~read):
+            m.d.sync += read.eq(1)
+        with m.Elif(came):
+            m.d.comb += self.i.stream.ready.eq(1)
+            same, zero = ours & (word == self.own.data), nobodys & (word == 0)
+            m.d.sync += [ours.eq(same), nobodys.eq(zero), read.eq(0), left.eq(left - 1), at.eq(at + 1)]
+            with m.If(at == _PREFIX_WORDS - 1):
+                m.d.sync += [for_us.eq(same | zero), ours.eq(1), nobodys.eq(1)]
+                m.next = "SKIP"
+        with m.If(self.i.stream.valid & self.i.stream.payload.end):
+            m.d.sync += [ours.eq(1), nobodys.eq(1), read.eq(0)]
+
+
+def _number(one: Value) -> Value:
+    """The place of the bit that is set, of at most one."""
+    bits = max(1, (len(one) - 1).bit_length())
+    return Cat(Cat(one[n] for n in range(len(one)) if n >> bit & 1).any() for bit in range(bits))

@@ -1,0 +1,117 @@
+"""A node that counts: it publishes std_msgs/UInt32 on `count`, and shows what it receives on `shown`; on a simulated wire."""
+
+from __future__ import annotations
+
+import functools
+import pathlib
+from typing import Any
+
+from amaranth.hdl import ClockDomain, ClockSignal, Module, Signal
+from amaranth.lib import wiring
+from amaranth.lib.cdc import ResetSynchronizer
+from amaranth.lib.wiring import In, Out
+
+from roslet.cli.gateware_sim import dropped
+from roslet.gateware.rtps.tables import Local
+from roslet.gateware.tops.ros_core import Identity, RosCore
+from roslet.sim.compile import build
+from roslet.sim.mii import Mii
+from roslet.sim.model import Model
+from roslet.sim.wire import Wire
+
+ADDRESS = "192.168.1.100"
+TYPE = "std_msgs::msg::dds_::UInt32_"
+CLOCK, PHY_CLOCK, FACTOR = 50e6, 25e6, 250.0
+
+
+class CounterNode(wiring.Component):
+    """`rate` messages a second."""
+
+    def __init__(self, clk_hz: float, rate: float, reliable: bool, depth: int = 4) -> None:
+        self._period = round(clk_hz / rate)
+        self._core = RosCore(
+            Identity("counter", address=f"{ADDRESS}/24"),
+            [Local("rt/count", TYPE, reliable=reliable, words=1, depth=depth)],
+            [Local("rt/shown", TYPE, reliable=reliable)],
+            clk_hz,
+            counters=True,
+        )
+        self.reasons = self._core.reasons
+        members = self._core.signature.members
+        self._pins = [name for name in members if name in ("clk", "rst_n", "alive", "matched")]
+        self._pins += [name for name in members if name.startswith(("phy_", "drop_"))]
+        super().__init__(
+            {
+                **{name: members[name] for name in self._pins},
+                "number": Out(32),
+                "received": Out(32),
+                "count": Out(32),
+                "enable": In(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.domains.sync = ClockDomain()
+        m.d.comb += ClockSignal("sync").eq(self.clk)
+        m.submodules.reset = ResetSynchronizer(~self.rst_n, domain="sync")
+        m.submodules.core = core = self._core
+        for name in self._pins:
+            inside, outside = getattr(core, name), getattr(self, name)
+            flow = core.signature.members[name].flow
+            m.d.comb += outside.eq(inside) if flow == Out else inside.eq(outside)
+        left = Signal(32)
+        o, i = core.publish0.stream, core.receive0.stream
+        with m.FSM():
+            with m.State("WAIT"):
+                m.d.sync += left.eq(left + 1)
+                with m.If((left >= self._period - 1) & self.enable):
+                    m.d.sync += left.eq(0)
+                    m.next = "NUMBER"
+            with m.State("NUMBER"):
+                m.d.comb += [o.valid.eq(1), o.payload.data.eq(self.number)]
+                with m.If(o.ready):
+                    m.next = "END"
+            with m.State("END"):
+                m.d.comb += [o.valid.eq(1), o.payload.end.eq(1)]
+                with m.If(o.ready):
+                    m.d.sync += self.number.eq(self.number + 1)
+                    m.next = "WAIT"
+        word = Signal(32)
+        m.d.comb += [i.ready.eq(1), core.room.eq(1)]
+        with m.If(i.valid & ~i.payload.end):
+            m.d.sync += word.eq(i.payload.data)
+        with m.If(i.valid & i.payload.end & ~i.payload.bad):
+            m.d.sync += [self.received.eq(word), self.count.eq(self.count + 1)]
+        return m
+
+
+@functools.cache
+def compiled(clk_hz: float, rate: float, reliable: bool) -> tuple[pathlib.Path, dict[str, int]]:
+    design = CounterNode(clk_hz, rate, reliable)
+    return build(design), design.reasons
+
+
+class Running:
+    """The node on a wire, in whose seconds it counts."""
+
+    def __init__(self, rate: float = 10.0, reliable: bool = False, wire: Wire | None = None, link: Any = None) -> None:
+        library, self.reasons = compiled(CLOCK / FACTOR, rate, reliable)
+        self.model = Model(library)
+        for name, hertz in (("clk", CLOCK), ("phy_rx_clk", PHY_CLOCK), ("phy_tx_clk", PHY_CLOCK)):
+            self.model.clock(name, hertz)
+        self.model.set("rst_n", 0)
+        self.model.run(1e-6)
+        self.model.set("rst_n", 1)
+        self.wire = wire or Wire(FACTOR)
+        self.gates = self.wire.gateware(self.model, Mii(self.model), link)
+
+    def __enter__(self) -> Running:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.wire.close()
+        self.model.close()
+
+    def drops(self) -> dict[str, int]:
+        return dropped(self.model, self.reasons)
