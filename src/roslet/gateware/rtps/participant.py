@@ -24,6 +24,10 @@ from roslet.gateware.stream import FrameSignature
 from roslet.gateware.words import MessageSignature
 
 
+DISCOVERY_SIZE = 900
+"""Octets of a DATA of SEDP, at most in practice: what peers repeat together must fit a datagram that we can receive."""
+
+
 class Participant(wiring.Component):
     """A participant with fixed writers and readers.
 
@@ -78,7 +82,7 @@ class Participant(wiring.Component):
             "walker": Walker(peers, own),
             "submessages": Submessages(peers, own),
             "discovery": Discovery(peers, own),
-            "sender": Sender(self._rom, peers, own, len(writers)),
+            "sender": Sender(self._rom, peers, own, len(writers), max(1, longest // DISCOVERY_SIZE)),
             "outbox": Outbox(most, depth),
         }
         self.drops = [
@@ -147,6 +151,7 @@ class Participant(wiring.Component):
             discovery.domain.eq(self._domain),
             discovery.tick.eq(self.tick),
             submessages.room.eq(self.room),
+            submessages.over.eq(walker.idle),
             *(block.alive.eq(discovery.alive) for block in (submessages, sender)),
             *(block.matched.eq(discovery.matched) for block in (submessages, sender)),
             sender.due0.en.eq(discovery.due),

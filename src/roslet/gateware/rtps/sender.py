@@ -29,7 +29,8 @@ class Sender(wiring.Component):
 
     - A message is kept, replacing the oldest that its writer keeps, and sent at once to each reader that matches, with a
       HEARTBEAT to those that are reliable.
-    - A peer's writer gets an ACKNACK when it is due: what is missing up to its last.
+    - A peer's writer gets an ACKNACK when it is due: what is missing up to its last, `window` of it at most, as peers put
+      what they repeat into one datagram.
     - A peer's reader gets, when it is due, what it has asked for, of what is kept; a GAP for what is not; and a HEARTBEAT. In a
       sweep it gets a HEARTBEAT if it has not acknowledged everything.
     - A participant that is to be greeted gets our announcement, by itself.
@@ -37,7 +38,8 @@ class Sender(wiring.Component):
     Dropped: `drop_long{n}`, a message of more words than its writer's.
     """
 
-    def __init__(self, rom: Rom, peers: PeerMap, own: OwnMap, users: int) -> None:
+    def __init__(self, rom: Rom, peers: PeerMap, own: OwnMap, users: int, window: int = 3) -> None:
+        self._window = window
         self._rom, self._peers, self._own, self._users = rom, peers, own, users
         super().__init__(
             {
@@ -260,7 +262,7 @@ class Sender(wiring.Component):
             with m.State("MISSING"):
                 missing = Signal(32)
                 m.d.comb += missing.eq(self.peers.data - first + 1)
-                for n in range(32):
+                for n in range(min(self._window, 32)):
                     m.d.sync += registers.bitmap[31 - n].eq(~missing[31] & (missing > n))
                 m.d.comb += self.own.addr.eq(own.own(tables.ACKNACK_COUNT))
                 m.next = "ACKNACK"

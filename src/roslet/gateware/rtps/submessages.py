@@ -43,7 +43,7 @@ class Submessages(wiring.Component):
 
     Ports: `i`, bodies of submessages (`Walker`); `user`, messages for our readers; `discovery`, parameter lists of
     participants and endpoints; `room`, a bit for each of our readers: whoever takes its messages can take a whole one now, and
-    waits with it for no longer than it takes to store; `alive`, `matched`, the participants and user proxies that there are;
+    waits with it for no longer than it takes to store; `over`, no datagram is passing; `alive`, `matched`, the participants and user proxies that there are;
     `peers`, a read port, and `write`; `due` is high for a cycle when something must be sent on behalf of proxy `due_proxy`.
 
     A message's words go out before it is known that its datagram is good, and its end says so. What is kept is changed
@@ -51,6 +51,8 @@ class Submessages(wiring.Component):
 
     - DATA of a peer's writer that matches: it is taken if its number is the one wanted next, or, from a writer that does not
       repeat, a later one. The first of all is taken whatever its number. The next one is wanted then.
+      What a heartbeat told of and is still missing then, or is missing before a number that came too early, is asked for
+      when the datagram is over: `due`.
     - HEARTBEAT: what is before its first is wanted no more; from a volatile writer that has not been heard, nothing that it
       covers is. `due` unless it is final and nothing is missing: an ACKNACK.
     - GAP that begins at or before what is wanted: what is behind the run that begins there is wanted next.
@@ -71,6 +73,7 @@ class Submessages(wiring.Component):
                 "user": Out(MessageSignature(USER)),
                 "discovery": Out(MessageSignature(DISCOVERY)),
                 "room": In(self._readers),
+                "over": In(1),
                 "alive": In(peers.participants),
                 "matched": In(peers.endpoints),
                 "peers": Out(ReadSignature(peers.address_bits)),
@@ -114,7 +117,11 @@ class Submessages(wiring.Component):
             Cat(builtin_kind, meta.slot),
             tables.BUILTINS * self._peers.participants + endpoint,
         )
+        more, more_proxy = Signal(), Signal.like(self.due_proxy)  # is to be asked for when this datagram is over
         m.d.comb += self.due_proxy.eq(proxy)
+        with m.If(more & self.over):
+            m.d.comb += [self.due.eq(1), self.due_proxy.eq(more_proxy)]
+            m.d.sync += more.eq(0)
 
         def at(what: int | Value) -> Value:
             return Mux(
@@ -209,7 +216,11 @@ class Submessages(wiring.Component):
                 m.d.sync += wanted[:32].eq(self.peers.data)
                 m.next = "LOAD HIGH"
             with m.State("LOAD HIGH"):
+                m.d.comb += self.peers.addr.eq(at(tables.LAST))
                 m.d.sync += wanted[32:].eq(self.peers.data)
+                m.next = "LOAD LAST"
+            with m.State("LOAD LAST"):
+                m.d.sync += last_lo.eq(self.peers.data)
                 m.next = "SN HIGH"
             with m.State("SN HIGH"):
                 m.d.sync += sn[32:].eq(number)
@@ -226,7 +237,8 @@ class Submessages(wiring.Component):
             # -- DATA
             with m.State("EXTRA"):
                 with m.If(skip != 0):
-                    m.d.sync += skip.eq(skip - 1)
+                    with m.If(came):
+                        m.d.sync += skip.eq(skip - 1)
                     take("EXTRA")
                 with m.Elif(sn[63] | (sn == 0)):
                     m.next = "INVALID"
@@ -290,6 +302,9 @@ class Submessages(wiring.Component):
             with m.State("WRITE HIGH"):
                 m.d.comb += put(tables.NEXT_HI, wanted[32:])
                 m.d.comb += i.ready.eq(1)
+                # Of what a heartbeat told of, there is more.
+                with m.If(is_data & reliable & ~(last_lo - wanted[:32])[31]):
+                    m.d.sync += [more.eq(1), more_proxy.eq(proxy)]
                 m.next = "IDLE"
             with m.State("DISCOVERY"):
                 m.d.comb += self.discovery.stream.valid.eq(i.valid)
@@ -313,6 +328,8 @@ class Submessages(wiring.Component):
                         self.drop_early.eq(reason == early),
                         self.drop_busy.eq(reason == busy),
                     ]
+                    with m.If(found & (reason == early)):
+                        m.d.sync += [more.eq(1), more_proxy.eq(proxy)]
             with m.State("INVALID"):
                 m.d.comb += i.ready.eq(1)
                 with m.If(ended):
@@ -327,7 +344,8 @@ class Submessages(wiring.Component):
                     m.next = "INVALID"
                 with m.Else():
                     m.d.sync += skip[0].eq(sn <= wanted)  # a GAP begins here or before
-                    m.d.sync += sn[32:].eq(number)
+                    with m.If(came):
+                        m.d.sync += sn[32:].eq(number)
                     take("LAST LOW")
             with m.State("LAST LOW"):
                 m.d.sync += [sn[:32].eq(number), last_lo.eq(0)]
