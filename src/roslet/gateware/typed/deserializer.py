@@ -64,7 +64,10 @@ class Deserializer(wiring.Component):
         position = Position(m, program, plan, run)
         took = Signal()  # a word
         word, needs_word = self._window(m, program, position, took)
-        word = self._swapped(program, word)
+        there = Signal(8 * WORD)
+        m.d.comb += there.eq(word)
+        word = Signal(8 * WORD)
+        m.d.comb += word.eq(self._swapped(program, there))
 
         count = word[: program.count_bits]
         over, bad_text = Signal(), Signal()
@@ -188,9 +191,10 @@ class Deserializer(wiring.Component):
     def _fields(self, m: Module, program: Program, word: Value, store: Value) -> None:
         """Registers for what the steps bring."""
         steps, big = self.plan.steps, self.i.meta.big
-        now = [Signal(name=f"now_{n}") for n in range(len(steps))]
-        m.d.comb += [one.eq(store & (program.at == n)) for n, one in enumerate(now)]
-        length = (word[: program.count_bits] - 1)[: program.count_bits]  # without the NUL
+        now = [store & (program.at == n) for n in range(len(steps))]
+        length = Signal(program.count_bits)
+        m.d.comb += length.eq(word - 1)  # without the NUL
+        fields = m.submodules.fields = Module()  # apart, so that a simulator leaves it alone while it is steady
         parts: dict[Path, dict[int, Signal]] = {}
 
         def register(path: Path, shift: int, bits: int, enable: Value, value: Value) -> None:
@@ -213,4 +217,5 @@ class Deserializer(wiring.Component):
                 enable = Mux(big, now[other], now[n]) if piece.wide else now[n]
                 register(piece.path, piece.shift, 8 * piece.octets, enable, octets_)
         for path, halves in parts.items():
-            m.d.comb += at_path(self.o.payload, path).eq(Cat(*(halves[shift] for shift in sorted(halves))))
+            value = Cat(*(halves[shift] for shift in sorted(halves)))
+            fields.d.comb += at_path(self.o.payload, path).eq(value)

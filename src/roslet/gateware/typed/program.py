@@ -29,7 +29,9 @@ class Program:
         self.steps = steps = plan.steps
         self.end = len(steps)
         self.at = Signal(range(self.end + 1))
-        self.ended = self.at == self.end
+        self.ended = Signal()
+        self.tables = m.submodules.tables = Module()  # apart, so that a simulator works them out once a step
+        self.tables.d.comb += self.ended.eq(self.at == self.end)
         counts = [step for step in steps if step.kind == COUNT]
         self.count_bits = max([(step.bound + step.text).bit_length() for step in counts], default=1)
         content = [step for step in counts if step.level is None]
@@ -43,7 +45,8 @@ class Program:
         # Octets of content that are left, this step's too.
         self._left = left = Signal(self._left_bits)
         wide = Cat(left, C(0, 3))
-        self.last = (wide[3:] == 0) & ~(wide[2] & (wide[0] | wide[1]))
+        self.last = Signal()
+        m.d.comb += self.last.eq((wide[3:] == 0) & ~(wide[2] & (wide[0] | wide[1])))
         few = Mux(self.last, wide[:3], WORD)
         fixed = self.column([step.octets for step in steps], FIXED, COUNT, LOOP)
         self.octets = Signal(3)
@@ -66,13 +69,18 @@ class Program:
         if len(set(rows)) <= 1:
             return C(rows[0])
         width = max(rows).bit_length()
-        return pick([C(row, unsigned(width)) for row in rows], self.at)
+        return self._named(pick([C(row, unsigned(width)) for row in rows], self.at))
+
+    def _named(self, value: Value) -> Value:
+        found = Signal(len(value), name="column")
+        self.tables.d.comb += found.eq(value)
+        return found
 
     def _flag(self, what: Callable[[Step], bool]) -> Value:
         """Whether the step is so; none is behind the last one."""
         if not any(map(what, self.steps)):
             return C(0, 1)
-        return pick([C(int(what(step)), 1) for step in self.steps], self.at) & ~self.ended
+        return self._named(pick([C(int(what(step)), 1) for step in self.steps], self.at) & ~self.ended)
 
     def real(self) -> list[Value]:
         """Of each octet of a content step, whether it is of the content; a NUL is not."""

@@ -64,7 +64,7 @@ class Serializer(wiring.Component):
             i.ready.eq(run & ends),
             self.drop_bound.eq(run & ends & refused),
         ]
-        word, count = self._word(program, position.pads)
+        word, count = self._word(m, program, position.pads)
         over = Signal()
         if any(step.kind == COUNT and step.bound & step.bound + 1 for step in plan.steps):
             bound = program.column([step.bound + step.text for step in plan.steps], COUNT)
@@ -89,17 +89,20 @@ class Serializer(wiring.Component):
         (self._words if plan.aligned else self._shifted)(m, item, full, free, position)
         return m
 
-    def _word(self, program: Program, pads: Value) -> tuple[Value, Value]:
+    def _word(self, m: Module, program: Program, pads: Value) -> tuple[Value, Value]:
         """The octets of the step, or zeros if `pads`; and those of a COUNT."""
         steps = self.plan.steps
         rows: list[Value] = []
         for one in steps:
             rows.append(rows[-1] if one.kind == LOOP else self._octets(one))  # not sent: any
-        word = pick(rows, program.at)
+        fields = m.submodules.fields = Module()  # apart, as the tables are
+        raw, word = Signal(8 * WORD), Signal(8 * WORD)
+        fields.d.comb += raw.eq(pick(rows, program.at))
+        m.d.comb += word.eq(raw)
         texts = [(one.bound + 1).bit_length() for one in steps if one.kind == COUNT and one.text]
         if texts:  # the NUL is counted
             low = max(texts)
-            word = Cat((word[:low] + (program.is_count & program.is_text))[:low], word[low:])
+            m.d.comb += word[:low].eq(raw[:low] + (program.is_count & program.is_text))
         sent = [(real | ~program.is_content) & ~pads for real in program.real()]
         masked = [Mux(one, octet, 0) for one, octet in zip(sent, octets(word), strict=True)]
         return Cat(*masked), word[: program.count_bits]
