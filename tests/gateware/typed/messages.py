@@ -15,8 +15,8 @@ REGISTRY = Registry("ros2", environment=None)
 STORE = get_typestore(Stores.ROS2_JAZZY)
 
 
-def bits(message: Message, value: dict[str, Any], junk: int = 0) -> dict[str, Any]:
-    """What `layout.const` of the message takes. `junk` fills nothing: elements behind a length are left out."""
+def bits(message: Message, value: dict[str, Any]) -> dict[str, Any]:
+    """What `layout.const` of the message takes."""
     return {field.name: _field(field.type, value[field.name]) for field in message.fields}
 
 

@@ -12,7 +12,7 @@ from roslet.gateware.octets import octets, pick
 from roslet.gateware.typed.layout import at_path, message_layout, plan_of
 from roslet.gateware.typed.program import Position, Program
 from roslet.gateware.words import MessageSignature
-from roslet.gen.gateware import CONTENT, COUNT, LOOP, WORD
+from roslet.gen.gateware import CONTENT, COUNT, WORD
 
 if TYPE_CHECKING:
     from roslet.gen.gateware import Bounds, Kind, Path, Plan
@@ -77,9 +77,7 @@ class Deserializer(wiring.Component):
         if any(step.text for step in plan.steps):
             last = pick([octet != 0 for octet in octets(word)], (program.octets - 1)[:2])
             empty = program.is_count & (word == 0)
-            m.d.comb += bad_text.eq(
-                program.is_text & (empty | (program.is_content & program.last & last))
-            )
+            m.d.comb += bad_text.eq(program.is_text & (empty | (program.is_content & program.last & last)))
 
         ended = Signal()  # at an end that is taken
         good = Signal()
@@ -129,9 +127,7 @@ class Deserializer(wiring.Component):
         self._fields(m, program, word, store)
         return m
 
-    def _window(
-        self, m: Module, program: Program, position: Position, took: Value
-    ) -> tuple[Value, Value]:
+    def _window(self, m: Module, program: Program, position: Position, took: Value) -> tuple[Value, Value]:
         """The octets from the position on, and whether the next word has some of those that the step needs."""
         taken = self.i.stream.payload.data
         if self.plan.aligned:
@@ -194,7 +190,9 @@ class Deserializer(wiring.Component):
         now = [store & (program.at == n) for n in range(len(steps))]
         length = Signal(program.count_bits)
         m.d.comb += length.eq(word - 1)  # without the NUL
-        fields = m.submodules.fields = Module()  # apart, so that a simulator leaves it alone while it is steady
+        fields = m.submodules.fields = (
+            Module()
+        )  # apart, so that a simulator leaves it alone while it is steady
         parts: dict[Path, dict[int, Signal]] = {}
 
         def register(path: Path, shift: int, bits: int, enable: Value, value: Value) -> None:

@@ -54,13 +54,17 @@ class Program:
         m.d.comb += self.octets.eq(Mux(self.is_content, few, fixed) if content else fixed)
         self._levels = [
             Signal(max([step.bound for step in counts if step.level == level]).bit_length())
-            for level in range(1 + max([-1 if step.level is None else step.level for step in counts], default=-1))
+            for level in range(
+                1 + max([-1 if step.level is None else step.level for step in counts], default=-1)
+            )
         ]
 
     def column(self, values: Sequence[int], *kinds: int) -> Value:
         """One of `values`, by the step; of steps that are not of `kinds`, if there are any, anything."""
         rows = []
-        known = [value for value, step in zip(values, self.steps, strict=True) if step.kind in kinds or not kinds]
+        known = [
+            value for value, step in zip(values, self.steps, strict=True) if step.kind in kinds or not kinds
+        ]
         value = known[0] if known else 0
         for own, step in zip(values, self.steps, strict=True):
             if step.kind in kinds or not kinds:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
-from amaranth.lib import data, stream, wiring
+from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.octets import octets, pick
@@ -64,11 +64,7 @@ class Serializer(wiring.Component):
             i.ready.eq(run & ends),
             self.drop_bound.eq(run & ends & refused),
         ]
-        word, count = self._word(m, program, position.pads)
-        over = Signal()
-        if any(step.kind == COUNT and step.bound & step.bound + 1 for step in plan.steps):
-            bound = program.column([step.bound + step.text for step in plan.steps], COUNT)
-            m.d.comb += over.eq(program.is_count & (count > bound))
+        word, count, over = self._word(m, program, position.pads)
         with m.If(step):
             with m.If(program.ended):
                 m.d.sync += [program.at.eq(0), refused.eq(0)]
@@ -89,23 +85,27 @@ class Serializer(wiring.Component):
         (self._words if plan.aligned else self._shifted)(m, item, full, free, position)
         return m
 
-    def _word(self, m: Module, program: Program, pads: Value) -> tuple[Value, Value]:
-        """The octets of the step, or zeros if `pads`; and those of a COUNT."""
+    def _word(self, m: Module, program: Program, pads: Value) -> tuple[Value, Value, Value]:
+        """The octets of the step, or zeros if `pads`; of a COUNT what it has, and whether that is over the bound."""
         steps = self.plan.steps
         rows: list[Value] = []
         for one in steps:
             rows.append(rows[-1] if one.kind == LOOP else self._octets(one))  # not sent: any
         fields = m.submodules.fields = Module()  # apart, as the tables are
-        raw, word = Signal(8 * WORD), Signal(8 * WORD)
+        raw, word, over = Signal(8 * WORD), Signal(8 * WORD), Signal()
         fields.d.comb += raw.eq(pick(rows, program.at))
         m.d.comb += word.eq(raw)
-        texts = [(one.bound + 1).bit_length() for one in steps if one.kind == COUNT and one.text]
-        if texts:  # the NUL is counted
-            low = max(texts)
+        counts = [one for one in steps if one.kind == COUNT]
+        if any(one.bound & one.bound + 1 for one in counts):  # else no length has bits for more
+            bits = max(one.bound.bit_length() for one in counts)
+            bound = program.column([one.bound for one in steps], COUNT)
+            m.d.comb += over.eq(program.is_count & (raw[:bits] > bound))
+        if any(one.text for one in counts):  # the NUL is counted
+            low = program.count_bits
             m.d.comb += word[:low].eq(raw[:low] + (program.is_count & program.is_text))
         sent = [(real | ~program.is_content) & ~pads for real in program.real()]
         masked = [Mux(one, octet, 0) for one, octet in zip(sent, octets(word), strict=True)]
-        return Cat(*masked), word[: program.count_bits]
+        return Cat(*masked), word[: program.count_bits], over
 
     def _octets(self, step: Step) -> Value:
         lanes: list[Value] = [C(0, 8)] * WORD
