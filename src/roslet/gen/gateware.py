@@ -19,10 +19,11 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
     from roslet.idl import FieldType, Message, Registry, TypeName
+    from roslet.wire.message import Message as MessageClass
 
     Path: TypeAlias = tuple[str | int, ...]
     Shape: TypeAlias = "Number | Struct | Vector | Bounded"
-    Kind: TypeAlias = "str | TypeName | type"
+    Kind: TypeAlias = "str | TypeName | type[MessageClass]"
 
 WORD = 4
 """Octets of a word, and the most that a step moves."""
@@ -36,7 +37,8 @@ class Bounds(Record):
     """How much room variable parts have.
 
     `string` is for every string (octets without the NUL), `sequence` for every sequence (elements), `at` for single ones by
-    their paths: `{"header.frame_id": 16}`; of strings in an array, the path is followed by `[]`: `{"name": 6, "name[]": 20}`.
+    their paths: `{"header.frame_id": 16}`; of strings in an array the path is followed by `[]`:
+    `{"name": 6, "name[]": 20}`, and inside messages in an array it has none: `poses.header.frame_id`.
     Where the definition has a smaller bound, that holds.
     """
 
@@ -116,8 +118,9 @@ class Piece(Record):
 
 
 class Step(Record):
-    """One step. `align`: what the position must be made a multiple of before it, 1 where it is so anyway. `octets` of a FIXED
-    one. `jump`: of a COUNT and a LOOP where nothing (more) follows, of a CONTENT where it is the last, the step to go to.
+    """One step. `align`: what the position must be made a multiple of before it, 1 where it is so anyway. `octets` of a
+    FIXED one. `jump`: of a COUNT and a LOOP where nothing (more) follows, of a CONTENT where it is the last, the step to go
+    to.
 
     Of a COUNT: `bound` and `path` of what it counts; `text`, whether a NUL is counted too; `scale`, log2 of an element's
     octets. `level`, of a LOOP and the COUNT before it: how many sequences are around; None for a COUNT before CONTENT.
@@ -177,7 +180,7 @@ def plan(kind: Kind, bounds: Bounds | None = None, registry: Registry | None = N
     Raises UnknownType; Unsupported for a wstring; ValueError for a variable part without a bound, or a bound of nothing.
     """
     found = runtime.registry("ros2") if registry is None else registry
-    name = getattr(kind, "_type", kind)
+    name: str | TypeName = kind._type if isinstance(kind, type) else kind
     message = found.message(parse_type_name(name, "msg") if isinstance(name, str) else name)
     shapes = _Shapes(found, Bounds() if bounds is None else bounds, str(message.name))
     shape = shapes.message(message, "")

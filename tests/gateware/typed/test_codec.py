@@ -77,10 +77,10 @@ def _fits(value: Any, bounds: Bounds) -> bool:
     return True
 
 
-def _values(name: str, many: int = 2) -> list[dict[str, Any]]:
+def _values(name: str, many: int = 1) -> list[dict[str, Any]]:
     """The empty, the greatest, and random values that fit the bounds."""
     message = REGISTRY.message(name)
-    made = []
+    made: list[dict[str, Any]] = []
     for style in ("empty", "maximal", *["random", "foreign"] * many):
         for seed in range(20):
             value = Values(REGISTRY.message, f"{len(made)} {seed}", style).message(message)

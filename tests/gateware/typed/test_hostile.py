@@ -91,14 +91,14 @@ def test_random_octets_never_stop_it() -> None:
     for name in ("sensor_msgs/msg/Image", "diagnostic_msgs/msg/DiagnosticStatus"):
         whole = reference(name, _values(name)[-1])
         hostile = []
-        for _ in range(60):
+        for _ in range(40):
             octets = bytearray(whole)
             for _ in range(rng.randrange(1, 5)):
                 at = rng.randrange(len(octets))
                 octets[at] = rng.choice([0, 1, 255, rng.randrange(256)])
             hostile.append(bytes(octets[: rng.randrange(len(octets) + 1)]))
         got, counts = deserialize(Deserializer(_kind(name)), [*hostile, whole], 0, 0)
-        assert len(got) + sum(counts.values()) == 61
+        assert len(got) + sum(counts.values()) == 41
         assert seen(REGISTRY.message(name), got[-1]) == _expected(name)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -226,4 +227,4 @@ def test_a_message_takes_a_cycle_a_word_and_one_for_its_end(name: str, bounds: B
 
     bench.watch(watch)
     bench.run(lambda: len(got) == 3)
-    assert [late - early for early, late in zip(times, times[1:], strict=False)] == [words + 1] * 2
+    assert [late - early for early, late in itertools.pairwise(times)] == [words + 1] * 2

@@ -28,9 +28,9 @@ class Deserializer(wiring.Component):
     Ports: `i`, bodies, with `big` in `meta` (which may say more); `o`, messages in the layout of their type (`layout`).
     Octets behind the body are allowed, of padding are any. A bool is true where its octet is not zero.
 
-    Throughput one step of the plan a cycle (as of `Serializer`, and padding costs a cycle only where octets are shifted). `i`
-    is ready while there is no message at `o`, which is valid in the cycle after a good end and stays until it is taken.
-    Holds that message, of which what is behind a `length` means nothing; where octets are shifted, a word more.
+    Throughput one step of the plan a cycle, as of `Serializer`. `i` is ready while there is no message at `o`, which is
+    valid in the cycle after a good end and stays until it is taken. Holds that message, of which what is behind a `length`
+    means nothing; where octets are shifted, a word more.
 
     A message with a bad end is forgotten. So is one with a good end, whole, and counted, where
 

@@ -6,7 +6,7 @@ among them is by far the dearest, and a number that is the step's and the word's
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from amaranth.hdl import C, Cat, Module, Mux, Signal, Value, unsigned
@@ -15,7 +15,7 @@ from roslet.gateware.octets import pick
 from roslet.gen.gateware import CONTENT, COUNT, FIXED, LOOP, WORD, Plan
 
 if TYPE_CHECKING:
-    from roslet.gen.gateware import Step
+    pass
 
 
 class Program:
@@ -38,10 +38,10 @@ class Program:
         self._left_bits = max(
             [((step.bound << step.scale) + step.text).bit_length() for step in content], default=1
         )
-        self.is_count = self._flag(lambda step: step.kind == COUNT)
-        self.is_content = self._flag(lambda step: step.kind == CONTENT)
-        self.is_loop = self._flag(lambda step: step.kind == LOOP)
-        self.is_text = self._flag(lambda step: step.text)
+        self.is_count = self._flags([step.kind == COUNT for step in steps])
+        self.is_content = self._flags([step.kind == CONTENT for step in steps])
+        self.is_loop = self._flags([step.kind == LOOP for step in steps])
+        self.is_text = self._flags([step.text for step in steps])
         # Octets of content that are left, this step's too.
         self._left = left = Signal(self._left_bits)
         wide = Cat(left, C(0, 3))
@@ -80,11 +80,11 @@ class Program:
         self.tables.d.comb += found.eq(value)
         return found
 
-    def _flag(self, what: Callable[[Step], bool]) -> Value:
-        """Whether the step is so; none is behind the last one."""
-        if not any(map(what, self.steps)):
+    def _flags(self, values: Sequence[bool]) -> Value:
+        """One of `values`, by the step; false behind the last one."""
+        if not any(values):
             return C(0, 1)
-        return self._named(pick([C(int(what(step)), 1) for step in self.steps], self.at) & ~self.ended)
+        return self._named(pick([C(int(value), 1) for value in values], self.at) & ~self.ended)
 
     def real(self) -> list[Value]:
         """Of each octet of a content step, whether it is of the content; a NUL is not."""
@@ -110,11 +110,9 @@ class Program:
                 scaled = [count << scale for scale in scales]
                 m.d.sync += self._left.eq(pick(scaled, self.column(row, COUNT)))
         for number, level in enumerate(self._levels):
-            mine = self._flag(lambda step, n=number: step.kind == COUNT and step.level == n)
-            with m.If(mine):
+            with m.If(self._flags([step.kind == COUNT and step.level == number for step in steps])):
                 m.d.sync += level.eq(count)
-            mine = self._flag(lambda step, n=number: step.kind == LOOP and step.level == n)
-            with m.If(mine):
+            with m.If(self._flags([step.kind == LOOP and step.level == number for step in steps])):
                 m.d.comb += leaves.eq(level == 1)
                 m.d.sync += level.eq(level - 1)
 
@@ -123,8 +121,8 @@ class Position:
     """Follows the position, as far as it matters: `run` says that a step, or padding before it, is being done.
 
     `padding` are octets to be done before the step, 4 at most at a time; `pads` is whether there are any. Where every step
-    begins with a word the rest of a word needs none. Else `at` is the position modulo 8, and `completes` is whether a word is
-    complete afterwards.
+    begins with a word the rest of a word needs none. Else `at` is the position modulo 8, and `completes` is whether a word
+    is complete afterwards.
     """
 
     def __init__(self, m: Module, program: Program, plan: Plan, run: Value) -> None:
