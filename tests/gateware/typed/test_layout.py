@@ -11,7 +11,7 @@ from amaranth.hdl import signed, unsigned
 from amaranth.lib import data
 
 from gateware.frames import Bench
-from gateware.typed.messages import receive_values, receive_words, send_values
+from gateware.typed.messages import receive_values, receive_words, send_values, send_words
 from roslet.errors import UnknownType, Unsupported
 from roslet.gateware.typed.deserializer import Deserializer
 from roslet.gateware.typed.flat import Flat
@@ -203,6 +203,29 @@ def test_flat_ports_carry_a_message_either_way() -> None:
     bench.drive(give)
     bench.run(lambda: bool(got))
     assert got[0] == layout.const(value)
+
+
+MSGS = Path(__file__).parents[3] / "examples" / "msgs"
+
+
+def test_a_type_of_the_users_goes_through_and_back() -> None:
+    registry = Registry("ros2", environment=None)
+    registry.load(MSGS)
+    coordinate = plan("mros_comm_measure/Coordinate", registry=registry)
+    assert coordinate.maximum == 20
+    dut = Serializer(coordinate)
+    fields = {"x": 0x3F800000, "y": 0xC0000000, "z": 1, "time": {"sec": -2, "nanosec": 0x12345678}}
+    bench = Bench(dut)
+    send_values(bench, "i", [dut.layout.const(fields).as_value().value])
+    sent = receive_words(bench, "o")
+    bench.run(lambda: bool(sent))
+    assert sent == [bytes.fromhex("0000803f 000000c0 01000000 feffffff 78563412")]
+
+    bench = Bench(Deserializer(coordinate))
+    send_words(bench, "i", [*sent, bytes.fromhex("3f800000 c0000000 00000001 fffffffe 12345678")], [0, 1])
+    got = receive_values(bench, "o")
+    bench.run(lambda: len(got) == 2)
+    assert got == [dut.layout.const(fields)] * 2
 
 
 @pytest.mark.parametrize(
