@@ -1,8 +1,8 @@
 """Messages as streams of 32-bit words: what the RTPS blocks take and give, four octets a cycle.
 
 A message is any number of words and then an *end*, an item of its own that carries no data, as with frames of octets
-(`stream`). The first octet of a word is in its lowest bits. RTPS and CDR align to four octets, so a word never holds parts of
-two numbers of 32 bits.
+(`stream`). The first octet of a word is in its lowest bits. RTPS and CDR align to four octets, so a word never holds parts
+of two numbers of 32 bits.
 """
 
 from __future__ import annotations
