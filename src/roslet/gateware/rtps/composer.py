@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Array, C, Cat, Module, Mux, Signal, Value
+from amaranth.hdl import C, Cat, Module, Mux, Signal
 from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -10,7 +10,6 @@ from roslet.gateware.rtps.ports import ReadSignature
 from roslet.gateware.rtps.rom import WORD_BITS, Op, Register, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 
-REGISTERS = data.StructLayout({register.name.lower(): 32 for register in Register})
 SUBJECT = data.StructLayout({"builtin": 1, "kind": 2, "slot": 8, "endpoint": 8, "entity": 8, "sample": 32, "words": 16})
 """Whom and what it is about: the participant; the proxy, builtin or the user's; the number of our endpoint as its entity id has
 it; where the message begins in our own memory, and how many words it has."""
@@ -19,7 +18,8 @@ it; where the message begins in our own memory, and how many words it has."""
 class Composer(wiring.Component):
     """Runs through the template that begins at `at`, from `start`, high for a cycle, on: one word a cycle, from 2 cycles later.
 
-    Ports: `registers` and `subject`, steady until `done`, which is high in the cycle after the last word, or with it;
+    Ports: `subject`, steady until `done`, which is high in the cycle after the last word, or with it; `register`, in the same
+    cycle, the value of the sender's that `which` names;
     `peers` and `own`, read ports; `push` with `word`, what is written. What takes the words must have room for all.
     """
 
@@ -29,7 +29,8 @@ class Composer(wiring.Component):
             {
                 "at": In(range(len(rom.words))),
                 "start": In(1),
-                "registers": In(REGISTERS),
+                "which": Out(Register),
+                "register": In(32),
                 "subject": In(SUBJECT),
                 "peers": Out(ReadSignature(peers.address_bits)),
                 "own": Out(ReadSignature(own.address_bits)),
@@ -60,6 +61,7 @@ class Composer(wiring.Component):
         )
         m.d.comb += [
             read.addr.eq(Mux(running, Mux(in_message, here, here + 1), self.at)),
+            self.which.eq(argument[:4]),
             self.push.eq(ready),
             self.word.eq(
                 Mux(source == from_own, self.own.data, Mux(source == from_peers, self.peers.data, literal))
@@ -81,8 +83,7 @@ class Composer(wiring.Component):
                     m.d.comb += self.peers.addr.eq(proxy)
                     m.d.sync += source.eq(from_peers)
                 with m.Case(Op.REGISTER.value):
-                    values = [Value.cast(self.registers[register.name.lower()]) for register in Register]
-                    m.d.sync += literal.eq(Array(values)[argument[:4]])
+                    m.d.sync += literal.eq(self.register)
                 with m.Case(Op.ENTITY.value):
                     m.d.sync += literal[16:24].eq(subject.entity)
                 with m.Case(Op.LENGTH.value):

@@ -56,7 +56,7 @@ class Discovery(wiring.Component):
                 "hold": Out(1),
                 "idle": In(1),
                 "due": Out(1),
-                "due_proxy": Out(range(peers.proxies)),
+                "due_proxy": Out(peers.proxy_bits),
                 "greet": Out(1),
                 "greet_slot": Out(8),
                 **{f"drop_{name}": Out(1) for name in ("full", "incomplete", "refused", "qos", "malformed")},
@@ -247,7 +247,7 @@ class Discovery(wiring.Component):
                 Mux(word == tables.ASK_TO, tables.EVERYTHING, word == tables.ASK_FROM),
             )
             write(peers.builtin(slot, kind, word), value)
-            m.d.comb += [self.due.eq(step[:2] == 3), self.due_proxy.eq(Cat(kind, slot))]
+            m.d.comb += [self.due.eq(step[:2] == 3), self.due_proxy.eq(Cat(kind, slot)[: len(self.due_proxy) - 1])]
             m.d.sync += step.eq(step + 1)
             with m.If(step[:4] == 15):
                 m.next = "PROCEED"
@@ -291,7 +291,8 @@ class Discovery(wiring.Component):
             m.d.comb += agree[n].eq(Mux(is_writer, fits[0], fits[1]) & ~read.refused)
         transient = Signal()  # it gets, or gives, what was there before it
         reliable = Signal()
-        ip, port, last = Signal(32), Signal(32), Signal(32)
+        before = Signal.like(step)
+        m.d.sync += before.eq(step)
         with m.State("ENDPOINT"):
             m.d.sync += step.eq(0)
             for n in reversed(range(len(same))):
@@ -320,8 +321,6 @@ class Discovery(wiring.Component):
                 m.d.sync += self.matched.bit_select(endpoint, 1).eq(0)
         with m.State("MATCH"):
             m.next = "PROCEED"
-            where = Mux(read.user, peers.scratch(tables.USER_IP), peers.participant(slot, tables.USER_IP))
-            m.d.comb += address.eq(where)
             with m.If(~agreed):
                 m.d.comb += self.drop_qos.eq(1)
                 with m.If(found):
@@ -329,43 +328,35 @@ class Discovery(wiring.Component):
             with m.Elif(~found & self.matched.all()):
                 m.d.comb += self.drop_full.eq(1)
             with m.Else():
-                m.next = "WHERE"
+                m.next = "PROXY"
                 with m.If(~found):
                     m.d.sync += endpoint.eq(free(self.matched))
-        with m.State("WHERE"):
-            m.d.comb += address.eq(
-                Mux(read.user, peers.scratch(tables.USER_PORT), peers.participant(slot, tables.USER_PORT))
-            )
+        with m.State("PROXY"):  # a word behind what is read
+            last = self.own.data
             m.d.comb += own_address.eq(own.writer(local, tables.WRITER_LAST))
-            m.d.sync += ip.eq(self.peers.data)
-            m.next = "WHERE PORT"
-        with m.State("WHERE PORT"):
-            m.d.sync += [port.eq(self.peers.data), last.eq(self.own.data)]
-            m.next = "PROXY"
-        with m.State("PROXY"):
+            where = Mux(step[0], tables.USER_PORT, tables.USER_IP)  # for IP, 2, and PORT, 3
+            m.d.comb += address.eq(Mux(read.user, peers.scratch(where), peers.participant(slot, where)))
             # Before all that is kept, where it gets what was before it: numbers are compared by their difference.
-            first = Mux(transient, last - MAX_HISTORY, last + 1)
+            first = last + Mux(transient, C(-MAX_HISTORY, 32), C(1, 32))
             words = [
                 entity,
                 Cat(slot, local, C(0, 8 - len(local)), is_writer, reliable),
-                ip,
-                port,
+                self.peers.data,
+                self.peers.data,
                 Mux(is_writer, transient, first),  # NEXT_LO, ACKED
-                Mux(is_writer, 0, Mux(transient, first - 1, first)),  # NEXT_HI, ASK_FROM: no GAP for what was before
+                Mux(is_writer, 0, first),  # NEXT_HI, ASK_FROM
                 Mux(is_writer, 0, last),  # LAST, ASK_TO
                 Mux(is_writer, 0, first),  # START
             ]
-            with m.Switch(step[:3]):
-                for n, value in enumerate(words):
-                    with m.Case(n):
-                        write(peers.endpoint(endpoint, n), value)
+            with m.If(step != 0):
+                with m.Switch(before[:3]):
+                    for n, value in enumerate(words):
+                        with m.Case(n):
+                            write(peers.endpoint(endpoint, n), value)
             m.d.sync += step.eq(step + 1)
-            with m.If((step[:3] == tables.PORT) & found):
+            with m.If((step == tables.PORT + 1) & found):
                 m.next = "PROCEED"  # it has only moved
-            with m.If(step[:3] == len(words) - 1):
+            with m.If(step == len(words)):
                 m.d.sync += self.matched.bit_select(endpoint, 1).eq(1)
-                m.d.comb += [
-                    self.due.eq(1),
-                    self.due_proxy.eq(tables.BUILTINS * peers.participants + endpoint),
-                ]
+                m.d.comb += [self.due.eq(1), self.due_proxy.eq(Cat(endpoint, C(0, len(self.due_proxy) - 1 - len(endpoint)), C(1, 1)))]
                 m.next = "PROCEED"

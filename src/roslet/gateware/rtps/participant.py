@@ -19,6 +19,7 @@ from roslet.gateware.rtps.rom import Rom
 from roslet.gateware.rtps.sender import Sender
 from roslet.gateware.rtps.submessages import Submessages
 from roslet.gateware.rtps.tables import Local, OwnMap, PeerMap
+from roslet.gateware.rtps.turns import Turns
 from roslet.gateware.rtps.walker import Walker
 from roslet.gateware.stream import FrameSignature
 from roslet.gateware.words import MessageSignature
@@ -82,6 +83,7 @@ class Participant(wiring.Component):
             "walker": Walker(peers, own),
             "submessages": Submessages(peers, own),
             "discovery": Discovery(peers, own),
+            "turns": Turns(peers),
             "sender": Sender(self._rom, peers, own, len(writers), max(1, longest // DISCOVERY_SIZE)),
             "outbox": Outbox(most, depth),
         }
@@ -122,7 +124,9 @@ class Participant(wiring.Component):
             m.d.comb += getattr(self, self.drop_name(block, name)).eq(getattr(self._blocks[block], name))
         blocks = self._blocks
         queue, walker, submessages = blocks["queue"], blocks["walker"], blocks["submessages"]
-        discovery, sender, outbox = blocks["discovery"], blocks["sender"], blocks["outbox"]
+        discovery, turns, sender, outbox = (
+            blocks[name] for name in ("discovery", "turns", "sender", "outbox")
+        )
         m.submodules.composer = composer = Composer(self._rom, self._peers, self._own)
 
         connect(m, flipped(self.udp_rx), queue.i)
@@ -152,20 +156,24 @@ class Participant(wiring.Component):
             discovery.tick.eq(self.tick),
             submessages.room.eq(self.room),
             submessages.over.eq(walker.idle),
-            *(block.alive.eq(discovery.alive) for block in (submessages, sender)),
-            *(block.matched.eq(discovery.matched) for block in (submessages, sender)),
-            sender.due0.en.eq(discovery.due),
-            sender.due0.proxy.eq(discovery.due_proxy),
-            sender.due1.en.eq(submessages.due),
-            sender.due1.proxy.eq(submessages.due_proxy),
-            sender.greet.eq(discovery.greet),
-            sender.greet_slot.eq(discovery.greet_slot),
-            sender.announce.eq(self.announce),
-            sender.sweep.eq(self.sweep),
+            *(block.alive.eq(discovery.alive) for block in (submessages, turns)),
+            *(block.matched.eq(discovery.matched) for block in (submessages, turns, sender)),
+            turns.due0.en.eq(discovery.due),
+            turns.due0.proxy.eq(discovery.due_proxy),
+            turns.due1.en.eq(submessages.due),
+            turns.due1.proxy.eq(submessages.due_proxy),
+            turns.greet.eq(discovery.greet),
+            turns.greet_slot.eq(discovery.greet_slot),
+            turns.announce.eq(self.announce),
+            turns.sweep.eq(self.sweep),
+            turns.taken.eq(sender.taken),
+            sender.job.eq(turns.job),
+            sender.valid.eq(turns.valid),
             sender.group_port.eq(self.group_port),
             composer.at.eq(sender.template),
             composer.start.eq(sender.start),
-            composer.registers.eq(sender.registers),
+            sender.which.eq(composer.which),
+            composer.register.eq(sender.register),
             composer.subject.eq(sender.subject),
             sender.done.eq(composer.done),
             sender.room.eq(outbox.room),

@@ -39,3 +39,10 @@ PARTICIPANTS, PUBLICATIONS, SUBSCRIPTIONS = range(3)
 DISCOVERY = data.StructLayout({"kind": 2, "known": 1, "slot": 8, "gone": 1, "has_key": 1})
 """Beside a parameter list of discovery: of which writer it is, from whom; `gone`, it is about something that is no more, whose
 GUID is in the scratch area where `has_key`."""
+
+
+class DueSignature(wiring.Signature):
+    """Something must be sent for proxy `proxy`, when `en` is high for a cycle; seen from who says so."""
+
+    def __init__(self, proxy_bits: int) -> None:
+        super().__init__({"en": Out(1), "proxy": Out(proxy_bits)})

@@ -2,59 +2,61 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
 
-from amaranth.hdl import Array, C, Cat, Module, Mux, Signal, Value
+from amaranth.hdl import Array, C, Cat, Module, Mux, Signal, Value, signed
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from roslet.gateware.octets import pick
 from roslet.gateware.rtps import tables
-from roslet.gateware.rtps.composer import REGISTERS, SUBJECT
+from roslet.gateware.rtps.composer import SUBJECT
 from roslet.gateware.rtps.ports import ReadSignature, WriteSignature
-from roslet.gateware.rtps.rom import Rom
+from roslet.gateware.rtps.rom import Register, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
+from roslet.gateware.rtps.turns import JOB, first
 from roslet.gateware.words import MessageSignature
 from roslet.wire.rtps import locator
 
 GROUP = int.from_bytes(locator.SPDP_MULTICAST_ADDRESS, "little")
+CDR_LE = 0x0100
+"""The encapsulation header of our messages, as a word has it."""
+AGE = signed(16)
+"""How far a number is behind a writer's last: 0, it is the last; -1, the next; the oldest ones are all MAX_AGE."""
+MAX_AGE = tables.MAX_HISTORY - 1
 
 
 class Sender(wiring.Component):
-    """Serves the proxies in turn, those for which something is due, and all of them when `sweep` is high for a cycle.
+    """Serves who is next.
 
-    Ports: `publish0` .. for each writer of the user, the first `users` of the tables' writers: its messages. `alive`,
-    `matched`, `due`, `greet` as `Discovery` and `Submessages` have them, `due0`, `due1` one from each; `announce`, high for a
-    cycle, has us announced to all at `group_port`; `peers` and `own`, read ports, and `write`; `template`, `start`, `done`, `registers`,
-    `subject`, of the composer; `room`, `busy`, `finish`, `ip`, `port`, of the outbox.
+    Ports: `publish0` .. for each writer of the user, the first `users` of the tables' writers: its messages. `job`, `valid`,
+    `taken`, of `Turns`; `matched`, the user proxies that there are; `group_port`, where all are to be announced to;
+    `peers` and `own`, read ports, and `write`; `template`, `start`, `done`, `which`, `register`, `subject`, of the composer; `room`, `busy`, `finish`, `ip`,
+    `port`, of the outbox.
 
     - A message is kept, replacing the oldest that its writer keeps, and sent at once to each reader that matches, with a
-      HEARTBEAT to those that are reliable.
+      HEARTBEAT to those that are reliable. Between two messages somebody else is served.
     - A peer's writer gets an ACKNACK when it is due: what is missing up to its last, `window` of it at most, as peers put
       what they repeat into one datagram.
-    - A peer's reader gets, when it is due, what it has asked for, of what is kept; a GAP for what is not; and a HEARTBEAT. In a
-      sweep it gets a HEARTBEAT if it has not acknowledged everything.
-    - A participant that is to be greeted gets our announcement, by itself.
+    - A peer's reader gets, when it has asked, what it has asked for, of what is kept; a GAP for what is not; and a HEARTBEAT.
+      Otherwise it gets a HEARTBEAT if it has not acknowledged everything.
+    - Our announcement goes to everybody, or to the participant that is to be greeted.
 
     Dropped: `drop_long{n}`, a message of more words than its writer's.
     """
 
     def __init__(self, rom: Rom, peers: PeerMap, own: OwnMap, users: int, window: int = 3) -> None:
-        self._window = window
-        self._rom, self._peers, self._own, self._users = rom, peers, own, users
+        if not 1 <= window <= 32:
+            raise ValueError(f"an ACKNACK asks for 1 to 32 messages, not {window}")
+        self._rom, self._peers, self._own, self._users, self._window = rom, peers, own, users, window
         super().__init__(
             {
                 **{f"publish{n}": In(MessageSignature()) for n in range(users)},
                 **{f"drop_long{n}": Out(1) for n in range(users)},
-                "alive": In(peers.participants),
+                "job": In(JOB),
+                "valid": In(1),
+                "taken": Out(1),
                 "matched": In(peers.endpoints),
-                **{
-                    f"due{n}": In(wiring.Signature({"en": Out(1), "proxy": Out(range(peers.proxies))}))
-                    for n in range(2)
-                },
-                "greet": In(1),
-                "greet_slot": In(8),
-                "announce": In(1),
-                "sweep": In(1),
                 "group_port": In(16),
                 "peers": Out(ReadSignature(peers.address_bits)),
                 "own": Out(ReadSignature(own.address_bits)),
@@ -62,7 +64,8 @@ class Sender(wiring.Component):
                 "template": Out(range(len(rom.words))),
                 "start": Out(1),
                 "done": In(1),
-                "registers": Out(REGISTERS),
+                "which": In(Register),
+                "register": Out(32),
                 "subject": Out(SUBJECT),
                 "room": In(1),
                 "busy": In(1),
@@ -74,420 +77,390 @@ class Sender(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        peers, own, rom = self._peers, self._own, self._rom
-        many = peers.proxies
-        registers, subject = self.registers, self.subject
-
-        # Who is to be served
-        due, greetings = Signal(many), Signal(peers.participants)
-        cursor = Signal(range(many))
-        left = Signal(range(many + 1))  # of a sweep
-        asked = Signal()  # it was due, and not only its turn in a sweep
-        announcing = Signal()
-        served = Signal()
-        with m.If(served):
-            m.d.sync += due.bit_select(cursor, 1).eq(0)
-        for source in (self.due0, self.due1):
-            with m.If(source.en):
-                m.d.sync += due.bit_select(source.proxy, 1).eq(1)
-        with m.If(self.greet):
-            m.d.sync += greetings.bit_select(self.greet_slot, 1).eq(1)
-
-        # Whom it is about
-        builtin, kind, slot = subject.builtin, subject.kind, subject.slot
-        endpoint = subject.endpoint
-        local = Signal(8)
-        is_writer, reliable = Signal(), Signal()  # the peer's endpoint
-        publishing = Signal()
-        m.d.comb += subject.entity.eq(local + 1)
-
-        # Numbers: of the writer, and of the reader that is served
-        last, last_high = Signal(32), Signal(32)
-        first, number = Signal(32), Signal(32)
-        ask_from, ask_to, start = Signal(32), Signal(32), Signal(32)
-        kept = Signal(16)
-        acked = Signal(32)
-        padding = Signal(2)
-        m.d.comb += [
-            registers.last.eq(last),
-            registers.last_high.eq(last_high),
-            registers.first.eq(first),
-            # What is before the last number, and has a greater lower half, has a lower upper one.
-            registers.first_high.eq(last_high - ((first > last) & (first != last + 1))),
-            registers.number.eq(number),
-            registers.number_high.eq(last_high - (number > last)),
-            registers.encapsulation.eq(Cat(C(0x0100, 24), padding)),  # CDR_LE, and how many octets are not of it
-        ]
-
-        def behind(one: Value, other: Value) -> Value:
-            """Whether `one` comes after `other`, by their difference."""
-            return (other - one)[31]
-
-        def writer_word(word: int) -> Value:
-            return own.writer(local, word)
-
-        def proxy_word(word: int) -> Value:
-            return Mux(builtin, peers.builtin(slot, kind, word), peers.endpoint(endpoint, word))
-
-        # -- composing: a template for `ip` and `port`, and then `after`
-        after = Signal(4)
-        states: list[str] = []
-
-        def compose(template: Value | int, then: str) -> None:
-            if then not in states:
-                states.append(then)
-            m.d.sync += [self.template.eq(template), after.eq(states.index(then))]
-            m.next = "COMPOSE"
-
-        sample = Signal(32)
-        m.d.comb += subject.sample.eq(sample)
-        strides = [own.stride(one) for one in own.writers] or [1]
-        depths = [one.depth for one in own.writers] or [1]
-        bases = own.samples or [0]
-
-        def sample_of(sn: Value) -> Value:
-            """Where a message lies."""
-            places = [
-                C(base) + (sn[: depth.bit_length() - 1] << (stride.bit_length() - 1))
-                for base, stride, depth in zip(bases, strides, depths, strict=True)
-            ]
-            return Array(places)[local[: max(1, (len(places) - 1).bit_length())]]
-
-        turn = Signal()
-        streams = [getattr(self, f"publish{n}").stream for n in range(self._users)]
-        pending = Cat(stream.valid for stream in streams) if streams else C(0)
-        item: Any = None
-        if streams:
-            item = Array(streams)[local[: max(1, (len(streams) - 1).bit_length())]]
-        words_kept = Signal(16)
-        long = Signal()
-
+        self._afterwards: list[str] = []
+        self._after = Signal(4)
+        # The writer whose number is `last`; and of its messages the one that is spoken of, and the oldest for who is served
+        self._last, self._last_high = Signal(32), Signal(32)
+        self._age, self._oldest = Signal(AGE), Signal(AGE)
+        self._kept = Signal(16)
+        self._padding = Signal(2)
+        self._publishing, self._yield, self._asked = Signal(), Signal(), Signal()
+        self._is_writer, self._reliable = Signal(), Signal()  # the peer's endpoint
+        self._local = Signal(8)
+        self._count, self._bitmap = Signal(32), Signal(self._window)
+        m.d.comb += self.subject.entity.eq(self._local + 1)
+        self._increased = Signal(32)
+        m.d.comb += self._increased.eq(self.own.data + 1)
+        self._registers(m)
         with m.FSM():
-            with m.State("IDLE"):
-                m.d.sync += [
-                    cursor.eq(Mux(cursor == many - 1, 0, cursor + 1)),
-                    turn.eq(0),
-                    builtin.eq(cursor < tables.BUILTINS * peers.participants),
-                    kind.eq(cursor),
-                    slot.eq(cursor[2:]),
-                    endpoint.eq(cursor - tables.BUILTINS * peers.participants),
-                    publishing.eq(0),
-                ]
-                with m.If(left != 0):
-                    m.d.sync += left.eq(left - 1)
-                with m.If(pending.any() & ~turn):
-                    m.d.sync += [cursor.eq(cursor), left.eq(left), publishing.eq(1), builtin.eq(0)]
-                    for n in reversed(range(self._users)):
-                        with m.If(pending[n]):
-                            m.d.sync += local.eq(n)
-                    m.next = "PUBLISH"
-                with m.Elif(due.bit_select(cursor, 1) | (left != 0)):
-                    m.d.sync += [asked.eq(due.bit_select(cursor, 1)), cursor.eq(cursor)]
-                    m.next = "SERVE"
-                with m.Elif(greetings.any()):
-                    for n in reversed(range(peers.participants)):
-                        with m.If(greetings[n]):
-                            m.d.sync += slot.eq(n)
-                    m.d.sync += builtin.eq(1)
-                    m.next = "GREET"
-                with m.Elif(announcing):
-                    m.next = "ANNOUNCE"
-            # -- announcements
-            with m.State("ANNOUNCE"):
-                m.d.sync += [announcing.eq(0), self.ip.eq(GROUP), self.port.eq(self.group_port)]
-                m.d.comb += self.own.addr.eq(own.own(tables.SPDP_SN))
-                m.next = "SPDP"
-            with m.State("GREET"):
-                m.d.sync += greetings.bit_select(slot, 1).eq(0)
-                m.d.comb += self.peers.addr.eq(peers.participant(slot, tables.META_IP))
-                m.next = "GREET IP"
-            with m.State("GREET IP"):
-                m.d.sync += self.ip.eq(self.peers.data)
-                m.d.comb += self.peers.addr.eq(peers.participant(slot, tables.META_PORT))
-                m.next = "GREET PORT"
-            with m.State("GREET PORT"):
-                m.d.sync += self.port.eq(self.peers.data)
-                m.next = "SPDP"
-            with m.State("SPDP"):  # the announcement never changes, nor does its number
-                m.d.sync += [last.eq(1), last_high.eq(0), number.eq(1)]
-                compose(rom.start["participant"], "IDLE")
-            # -- a proxy: who, and where
-            with m.State("SERVE"):
-                m.d.comb += served.eq(asked)
-                m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.INFO))
-                m.d.sync += cursor.eq(Mux(cursor == many - 1, 0, cursor + 1))
-                m.next = "WHO"
-                gone = Mux(builtin, ~self.alive.bit_select(slot, 1), ~self.matched.bit_select(endpoint, 1))
-                with m.If(gone):
-                    m.next = "OVER"
-            with m.State("WHO"):
-                info = self.peers.data
-                with m.If(builtin):
-                    m.d.sync += [is_writer.eq(kind[1]), reliable.eq(1)]
-                    m.d.comb += self.peers.addr.eq(peers.participant(slot, tables.META_IP))
-                with m.Else():
-                    m.d.sync += [
-                        is_writer.eq(info[tables.INFO_WRITER]),
-                        reliable.eq(info[tables.INFO_RELIABLE]),
-                        local.eq(info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8]),
-                        slot.eq(info[tables.INFO_SLOT : tables.INFO_SLOT + 8]),
-                    ]
-                    m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.IP))
-                m.next = "IP"
-            with m.State("IP"):
-                m.d.sync += self.ip.eq(self.peers.data)
-                m.d.comb += self.peers.addr.eq(
-                    Mux(
-                        builtin,
-                        peers.participant(slot, tables.META_PORT),
-                        peers.endpoint(endpoint, tables.PORT),
-                    )
-                )
-                m.next = "PORT"
-            with m.State("PORT"):
-                m.d.sync += self.port.eq(self.peers.data)
-                m.d.comb += self.peers.addr.eq(proxy_word(tables.NEXT_LO))
-                m.next = "OVER"
-                with m.If(is_writer & asked):
-                    m.next = "WANTED"
-                with m.If(~is_writer & reliable):
-                    m.next = "ACKED"
-            # -- a peer's writer
-            with m.State("WANTED"):
-                m.d.sync += first.eq(self.peers.data)
-                m.d.comb += self.peers.addr.eq(proxy_word(tables.LAST))
-                m.next = "MISSING"
-                with m.If(self.peers.data == 0):
-                    m.next = "OVER"  # nothing has been heard of it
-            with m.State("MISSING"):
-                missing = Signal(32)
-                m.d.comb += missing.eq(self.peers.data - first + 1)
-                for n in range(min(self._window, 32)):
-                    m.d.sync += registers.bitmap[31 - n].eq(~missing[31] & (missing > n))
-                m.d.comb += self.own.addr.eq(own.own(tables.ACKNACK_COUNT))
-                m.next = "ACKNACK"
-            with m.State("ACKNACK"):
-                m.d.sync += registers.count.eq(self.own.data + 1)
-                self._write(m, own.own(tables.ACKNACK_COUNT), self.own.data + 1)
-                compose(
-                    Mux(
-                        builtin,
-                        Mux(kind[0], rom.start["subscription_acknack"], rom.start["publication_acknack"]),
-                        rom.start["acknack"],
-                    ),
-                    "OVER",
-                )
-            # -- a peer's reader
-            with m.State("ACKED"):
-                m.d.sync += acked.eq(self.peers.data)
-                m.d.comb += self.peers.addr.eq(proxy_word(tables.ASK_FROM))
-                m.d.comb += self.own.addr.eq(
-                    Mux(
-                        builtin,
-                        Mux(kind[0], own.own(tables.SUBSCRIPTIONS), own.own(tables.PUBLICATIONS)),
-                        writer_word(tables.WRITER_COUNT),
-                    )
-                )
-                m.next = "ASK FROM"
-            with m.State("ASK FROM"):
-                m.d.sync += [ask_from.eq(self.peers.data), first.eq(self.own.data), kept.eq(self.own.data)]
-                m.d.comb += self.peers.addr.eq(proxy_word(tables.ASK_TO))
-                m.d.comb += self.own.addr.eq(writer_word(tables.WRITER_LAST))
-                m.next = "ASK TO"
-            with m.State("ASK TO"):
-                m.d.sync += ask_to.eq(self.peers.data)
-                m.d.sync += last.eq(
-                    Mux(
-                        builtin,
-                        first + Mux(kind[0], len(own.readers) - 1, len(own.writers) - 1),
-                        self.own.data,
-                    )
-                )
-                m.d.comb += self.peers.addr.eq(proxy_word(tables.START))
-                m.d.comb += self.own.addr.eq(writer_word(tables.WRITER_LAST_HI))
-                m.next = "START"
-            with m.State("START"):
-                m.d.sync += start.eq(Mux(builtin, first, self.peers.data))
-                m.d.sync += last_high.eq(Mux(builtin, 0, self.own.data))
-                with m.If(~builtin):
-                    m.d.sync += first.eq(last - kept + 1)
-                m.next = "RANGE"
-            with m.State("RANGE"):
-                with m.If(behind(start, first)):
-                    m.d.sync += first.eq(start)
-                m.next = "JUDGE"
-            with m.State("JUDGE"):
-                m.d.sync += number.eq(ask_from)
-                with m.If(behind(ask_to, last)):
-                    m.d.sync += ask_to.eq(last)
-                m.next = "OVER"
-                with m.If(asked):
-                    m.next = "RESEND"
-                    with m.If(behind(first, ask_from)):
-                        m.d.sync += ask_from.eq(first)
-                        with m.If(~behind(ask_from, ask_to) & ~behind(start, ask_from) & ~builtin):
-                            compose(rom.start["gap"], "RESEND")
-                with m.Elif(~behind(acked, last)):
-                    m.next = "HEARTBEAT"
-            with m.State("RESEND"):
-                m.d.sync += number.eq(ask_from)
-                m.next = "AGAIN"
-            with m.State("AGAIN"):
-                index = (number - first)[:8]
-                m.d.comb += self.own.addr.eq(sample_of(number))
-                m.d.sync += sample.eq(sample_of(number))
-                m.next = "SAMPLE"
-                with m.If(behind(number, ask_to)):
-                    m.next = "HEARTBEAT"
-                with m.Elif(builtin):
-                    m.d.sync += local.eq(index)
-                    m.next = "DISCOVERY"
-            with m.State("DISCOVERY"):
-                starts = [
-                    Array(
-                        C(rom.start[f"{name}{n}"]) for n in range(len(table))
-                    )[local[: max(1, (len(table) - 1).bit_length())]]
-                    if table
-                    else C(0)
-                    for name, table in (("publication", own.writers), ("subscription", own.readers))
-                ]
-                compose(Mux(kind[0], starts[1], starts[0]), "NEXT")
-            with m.State("SAMPLE"):
-                m.d.sync += [subject.words.eq(self.own.data[:16]), padding.eq(self.own.data[16:18])]
-                compose(rom.start["message"], "NEXT")
-            with m.State("NEXT"):
-                m.d.sync += number.eq(number + 1)
-                m.next = "AGAIN"
-            with m.State("HEARTBEAT"):
-                m.d.comb += self.own.addr.eq(own.own(tables.HEARTBEAT_COUNT))
-                m.next = "COUNT"
-            with m.State("COUNT"):
-                m.d.sync += registers.count.eq(self.own.data + 1)
-                self._write(m, own.own(tables.HEARTBEAT_COUNT), self.own.data + 1)
-                with m.If(publishing):
-                    compose(rom.start["message_heartbeat"], "NEXT READER")
-                with m.Else():
-                    compose(
-                        Mux(
-                            builtin,
-                            Mux(
-                                kind[0],
-                                rom.start["subscription_heartbeat"],
-                                rom.start["publication_heartbeat"],
-                            ),
-                            rom.start["heartbeat"],
-                        ),
-                        "OVER",
-                    )
-            with m.State("OVER"):
-                m.d.sync += turn.eq(0)
-                m.next = "IDLE"
-            # -- a message of the user's
-            if streams:
-                self._publish(
-                    m, item, streams, local, endpoint, slot, last, last_high, first, kept, number, sample,
-                    sample_of, words_kept, padding, long, reliable, behind, compose, writer_word, turn,
-                )  # fmt: skip
+            self._idle(m)
+            self._announcements(m)
+            self._who(m)
+            self._writer(m)
+            self._reader(m)
+            if self._users:
+                self._publish(m)
             with m.State("COMPOSE"):
                 with m.If(self.room & ~self.busy):
                     m.d.comb += self.start.eq(1)
                     m.next = "COMPOSING"
             with m.State("COMPOSING"):
                 m.d.comb += self.finish.eq(self.done)
-                with m.If(self.done):
-                    with m.Switch(after):
-                        for n, state in enumerate(states):
-                            with m.Case(n):
-                                m.next = state
-        with m.If(self.announce):
-            m.d.sync += announcing.eq(1)
-        with m.If(self.sweep):
-            m.d.sync += left.eq(many)
+                with m.If(self.done), m.Switch(self._after):
+                    for n, state in enumerate(self._afterwards):
+                        with m.Case(n):
+                            m.next = state
         return m
+
+    # -- what states share
+
+    def _registers(self, m: Module) -> None:
+        """What templates refer to."""
+        which, last = self.which, Cat(self._last, self._last_high)
+        age = Signal(AGE)
+        number = Signal(64)
+        m.d.comb += [
+            age.eq(Mux((which == Register.FIRST) | (which == Register.FIRST_HIGH), self._oldest, self._age)),
+            number.eq(last - age),
+        ]
+        with m.Switch(which):
+            for register, value in (
+                (Register.FIRST, number[:32]),
+                (Register.FIRST_HIGH, number[32:]),
+                (Register.NUMBER, number[:32]),
+                (Register.NUMBER_HIGH, number[32:]),
+                (Register.LAST, self._last),
+                (Register.LAST_HIGH, self._last_high),
+                (Register.COUNT, self._count),
+                (Register.BITMAP, Cat(C(0, 32 - self._window), self._bitmap)),
+                (Register.ENCAPSULATION, Cat(C(CDR_LE, 24), self._padding)),
+            ):
+                with m.Case(register):
+                    m.d.comb += self.register.eq(value)
+
+    def _age_of(self, number: Value) -> Value:
+        """How far a number is behind the last."""
+        difference = (self._last - number)[:32]
+        return Mux(difference[31], -1, Mux(difference[15:31].any(), MAX_AGE, difference[:15])).as_signed()
+
+    def _compose(self, m: Module, template: Value | int, then: str) -> None:
+        """Compose it for `ip` and `port`, when there is room, and go on."""
+        if then not in self._afterwards:
+            self._afterwards.append(then)
+        m.d.sync += [self.template.eq(template), self._after.eq(self._afterwards.index(then))]
+        m.next = "COMPOSE"
 
     def _write(self, m: Module, address: Value | int, value: Value) -> None:
         m.d.comb += [self.write.en.eq(1), self.write.addr.eq(address), self.write.data.eq(value)]
 
-    def _publish(
-        self, m: Module, item: Any, streams: Any, local: Any, endpoint: Any, slot: Any, last: Any, last_high: Any, first: Any,
-        kept: Any, number: Any, sample: Any, sample_of: Any, words_kept: Any, padding: Any, long: Any, reliable: Any,
-        behind: Any, compose: Any, writer_word: Any, turn: Any,
-    ) -> None:  # fmt: skip
-        peers, own, rom, subject = self._peers, self._own, self._rom, self.subject
-        limits = Array(C(one.words, 16) for one in own.writers)
-        depths = Array(C(one.depth, 16) for one in own.writers)
-        index = local[: max(1, (len(own.writers) - 1).bit_length())]
-        with m.State("PUBLISH"):
-            m.d.comb += self.own.addr.eq(writer_word(tables.WRITER_LAST))
-            m.d.sync += [words_kept.eq(0), long.eq(0)]
+    def _by_kind(self, name: str) -> Value:
+        """The template for our discovery writer, or reader, that is served, or for the user's."""
+        start, subject = self._rom.start, self.subject
+        of_builtin = Mux(subject.kind[0], start[f"subscription_{name}"], start[f"publication_{name}"])
+        return Mux(subject.builtin, of_builtin, start[name])
+
+    def _proxy(self, word: int) -> Value:
+        subject = self.subject
+        return Mux(
+            subject.builtin,
+            self._peers.builtin(subject.slot, subject.kind, word),
+            self._peers.endpoint(subject.endpoint, word),
+        )
+
+    def _writer_word(self, word: int) -> Value:
+        return self._own.writer(self._local, word)
+
+    def _choose(self, values: Sequence[Value]) -> Value:
+        """That of our endpoint."""
+        return pick(list(values) or [C(0)], self._local[: max(0, (len(values) - 1).bit_length())])
+
+    def _sample(self, number: Value) -> Value:
+        """Where our writer keeps the message with this number."""
+        own = self._own
+        places = [
+            C(base, own.address_bits) + (number[: one.depth.bit_length() - 1] << (own.stride(one).bit_length() - 1))
+            for base, one in zip(own.samples, own.writers, strict=True)
+        ]
+        return self._choose(places)
+
+    # -- whose turn it is
+
+    def _idle(self, m: Module) -> None:
+        job, subject = self.job, self.subject
+        pending = Cat(getattr(self, f"publish{n}").stream.valid for n in range(self._users))
+        with m.State("IDLE"):
+            m.d.sync += [
+                self._yield.eq(0),
+                self._publishing.eq(0),
+                self._asked.eq(job.asked),
+                subject.builtin.eq(~job.user),
+                subject.kind.eq(job.index),
+                subject.slot.eq(Mux(job.greet, job.index, job.index[2:])),
+                subject.endpoint.eq(job.index),
+            ]
+            with m.If(self.valid & ~(pending.any() & ~self._yield)):
+                m.d.comb += self.taken.eq(1)
+                m.next = "WHO"
+                with m.If(job.announce):
+                    m.next = "ANNOUNCE"
+                with m.If(job.greet):
+                    m.d.comb += self.peers.addr.eq(self._peers.participant(job.index, tables.META_IP))
+                    m.next = "GREET"
+            if self._users:
+                with m.Elif(pending.any()):
+                    m.d.sync += [self._publishing.eq(1), subject.builtin.eq(0)]
+                    if self._users > 1:
+                        later = Cat(pending[n] & (self._local < n) for n in range(self._users))
+                        m.d.sync += self._local.eq(Mux(later.any(), first(later), first(pending)))
+                    else:
+                        m.d.sync += self._local.eq(0)
+                    m.next = "PUBLISH"
+            with m.If(~job.greet):
+                m.d.comb += self.peers.addr.eq(self._peers.endpoint(job.index, tables.INFO))
+
+    def _announcements(self, m: Module) -> None:
+        with m.State("ANNOUNCE"):
+            m.d.sync += [self.ip.eq(GROUP), self.port.eq(self.group_port)]
+            m.next = "ANNOUNCEMENT"
+        with m.State("GREET"):
+            m.d.sync += self.ip.eq(self.peers.data)
+            m.d.comb += self.peers.addr.eq(self._peers.participant(self.subject.slot, tables.META_PORT))
+            m.next = "GREET PORT"
+        with m.State("GREET PORT"):
+            m.d.sync += self.port.eq(self.peers.data)
+            m.next = "ANNOUNCEMENT"
+        with m.State("ANNOUNCEMENT"):  # it never changes, nor does its number
+            m.d.sync += [self._last.eq(1), self._last_high.eq(0), self._age.eq(0)]
+            self._compose(m, self._rom.start["participant"], "IDLE")
+
+    # -- a proxy
+
+    def _who(self, m: Module) -> None:
+        peers, subject = self._peers, self.subject
+        with m.State("WHO"):
+            info = self.peers.data
+            m.d.comb += self.peers.addr.eq(
+                Mux(
+                    subject.builtin,
+                    peers.participant(subject.slot, tables.META_IP),
+                    peers.endpoint(subject.endpoint, tables.IP),
+                )
+            )
+            m.d.sync += [self._is_writer.eq(subject.kind[1]), self._reliable.eq(1)]
+            with m.If(~subject.builtin):
+                m.d.sync += [
+                    self._is_writer.eq(info[tables.INFO_WRITER]),
+                    self._reliable.eq(info[tables.INFO_RELIABLE]),
+                    self._local.eq(info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8]),
+                    subject.slot.eq(info[tables.INFO_SLOT : tables.INFO_SLOT + 8]),
+                ]
+            m.next = "WHERE"
+        with m.State("WHERE"):
+            m.d.sync += self.ip.eq(self.peers.data)
+            m.d.comb += self.peers.addr.eq(
+                Mux(
+                    subject.builtin,
+                    peers.participant(subject.slot, tables.META_PORT),
+                    peers.endpoint(subject.endpoint, tables.PORT),
+                )
+            )
+            m.next = "IDLE"
+            with m.If(self._is_writer & self._asked):
+                m.next = "WRITER"
+            with m.If(~self._is_writer & self._reliable):
+                m.next = "READER"
+
+    def _writer(self, m: Module) -> None:
+        """A peer's writer: what it says its last is, and what we want."""
+        own = self._own
+        with m.State("WRITER"):
+            m.d.sync += self.port.eq(self.peers.data)
+            m.d.comb += self.peers.addr.eq(self._proxy(tables.LAST))
+            m.next = "WANTED"
+        with m.State("WANTED"):
+            m.d.sync += self._last.eq(self.peers.data)
+            m.d.comb += self.peers.addr.eq(self._proxy(tables.NEXT_LO))
+            m.next = "MISSING"
+        with m.State("MISSING"):
+            age = self._age_of(self.peers.data)
+            m.d.sync += [self._bitmap[-1 - n].eq(age >= n) for n in range(self._window)]
+            m.d.comb += self.own.addr.eq(own.own(tables.ACKNACK_COUNT))
+            m.next = "ACKNACK"
+            with m.If(self.peers.data == 0):
+                m.next = "IDLE"  # nothing has been heard of it
+        with m.State("ACKNACK"):
+            m.d.sync += self._count.eq(self._increased)
+            self._write(m, own.own(tables.ACKNACK_COUNT), self._increased)
+            self._compose(m, self._by_kind("acknack"), "IDLE")
+
+    def _reader(self, m: Module) -> None:
+        """A peer's reader: what we have, and what it has and asks for."""
+        own, subject = self._own, self.subject
+        ask_to = Signal(AGE)
+        start, unacknowledged = Signal(AGE), Signal()
+        kinds = len(own.writers) - 1, len(own.readers) - 1  # ages of the oldest that discovery has to say
+        with m.State("READER"):
+            m.d.sync += self.port.eq(self.peers.data)
+            first_word = Mux(subject.kind[0], own.own(tables.SUBSCRIPTIONS), own.own(tables.PUBLICATIONS))
+            m.d.comb += self.own.addr.eq(
+                Mux(subject.builtin, first_word, self._writer_word(tables.WRITER_LAST))
+            )
             m.next = "LAST"
         with m.State("LAST"):
-            m.d.sync += [last.eq(self.own.data + 1), number.eq(self.own.data + 1)]
-            m.d.comb += self.own.addr.eq(writer_word(tables.WRITER_LAST_HI))
-            m.next = "LAST HIGH"
-        with m.State("LAST HIGH"):
-            m.d.sync += [last_high.eq(self.own.data + (last == 0)), sample.eq(sample_of(number))]
-            m.d.comb += self.own.addr.eq(writer_word(tables.WRITER_COUNT))
+            most = Mux(subject.kind[0], C(kinds[1], AGE), C(kinds[0], AGE))
+            m.d.sync += [
+                self._oldest.eq(most),
+                self._last.eq(self.own.data + Mux(subject.builtin, most, 0)),
+            ]
+            m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST_HI))
+            m.d.comb += self.peers.addr.eq(self._proxy(tables.START))
+            m.next = "START"
+        with m.State("START"):
+            age = self._age_of(self.peers.data)
+            m.d.sync += [start.eq(Mux(subject.builtin, MAX_AGE, age)), self._last_high.eq(self.own.data)]
+            with m.If(subject.builtin):
+                m.d.sync += self._last_high.eq(0)
+            m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_COUNT))
+            m.d.comb += self.peers.addr.eq(self._proxy(tables.ACKED))
+            m.next = "ACKED"
+        with m.State("ACKED"):
+            m.d.sync += [unacknowledged.eq(self._age_of(self.peers.data) >= 0), self._kept.eq(self.own.data)]
+            with m.If(~subject.builtin):
+                m.d.sync += self._oldest.eq((self.own.data - 1)[:16].as_signed())
+            m.d.comb += self.peers.addr.eq(self._proxy(tables.ASK_FROM))
+            m.next = "ASK FROM"
+        with m.State("ASK FROM"):
+            m.d.sync += self._age.eq(self._age_of(self.peers.data))
+            with m.If(start < self._oldest):
+                m.d.sync += self._oldest.eq(start)
+            m.d.comb += self.peers.addr.eq(self._proxy(tables.ASK_TO))
+            m.next = "ASK TO"
+        with m.State("ASK TO"):
+            age = self._age_of(self.peers.data)
+            m.d.sync += ask_to.eq(Mux(age < 0, 0, age))
+            m.next = "JUDGE"
+        with m.State("JUDGE"):
+            m.next = "IDLE"
+            with m.If(self._asked):
+                m.next = "RESEND"
+                lost = (self._age > self._oldest) & (self._age < start) & (self._age >= ask_to)
+                with m.If(lost & ~subject.builtin):
+                    self._compose(m, self._rom.start["gap"], "RESEND")
+            with m.Elif(unacknowledged):
+                m.next = "HEARTBEAT"
+        with m.State("RESEND"):
+            with m.If(self._age > self._oldest):
+                m.d.sync += self._age.eq(self._oldest)
+            m.next = "AGAIN"
+        with m.State("AGAIN"):
+            number = (self._last - self._age)[:16]
+            m.d.comb += self.own.addr.eq(self._sample(number))
+            m.d.sync += subject.sample.eq(self._sample(number))
+            m.next = "SAMPLE"
+            with m.If(subject.builtin):
+                m.d.sync += self._local.eq(self._oldest - self._age)
+                m.next = "DISCOVERY"
+            with m.If(self._age < ask_to):
+                m.next = "HEARTBEAT"
+        with m.State("DISCOVERY"):
+            starts = [
+                self._choose([C(self._rom.start[f"{name}{n}"]) for n in range(len(table))])
+                for name, table in (("publication", own.writers), ("subscription", own.readers))
+            ]
+            self._compose(m, Mux(subject.kind[0], starts[1], starts[0]), "NEXT")
+        with m.State("SAMPLE"):
+            m.d.sync += [subject.words.eq(self.own.data[:16]), self._padding.eq(self.own.data[16:18])]
+            self._compose(m, self._rom.start["message"], "NEXT")
+        with m.State("NEXT"):
+            m.d.sync += self._age.eq(self._age - 1)
+            m.next = "AGAIN"
+        with m.State("HEARTBEAT"):
+            m.d.comb += self.own.addr.eq(own.own(tables.HEARTBEAT_COUNT))
+            m.next = "COUNT"
+        with m.State("COUNT"):
+            m.d.sync += self._count.eq(self._increased)
+            self._write(m, own.own(tables.HEARTBEAT_COUNT), self._increased)
+            self._compose(m, self._by_kind("heartbeat"), "IDLE")
+            if self._users:
+                with m.If(self._publishing):
+                    self._compose(m, self._rom.start["message_heartbeat"], "NEXT READER")
+
+    # -- a message of the user's
+
+    def _publish(self, m: Module) -> None:
+        own, peers, subject = self._own, self._peers, self.subject
+        endpoint = subject.endpoint
+        streams = [getattr(self, f"publish{n}").stream for n in range(self._users)]
+        item = Signal.like(streams[0].payload)
+        valid = Signal()
+        m.d.comb += [
+            item.eq(Array(Value.cast(one.payload) for one in streams)[self._local]),
+            valid.eq(Array(one.valid for one in streams)[self._local]),
+        ]
+        words, long = Signal(16), Signal()
+        with m.State("PUBLISH"):
+            m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST))
+            m.d.sync += [words.eq(0), long.eq(0), self._age.eq(0), endpoint.eq(0)]
+            m.next = "NUMBER"
+        with m.State("NUMBER"):
+            m.d.sync += self._last.eq(self._increased)
+            m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST_HI))
+            m.next = "NUMBER HIGH"
+        with m.State("NUMBER HIGH"):
+            m.d.sync += self._last_high.eq(Mux(self._last == 0, self._increased, self.own.data))
+            m.d.sync += subject.sample.eq(self._sample(self._last))
+            m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_COUNT))
             m.next = "KEPT"
         with m.State("KEPT"):
-            m.d.sync += kept.eq(Mux(self.own.data[:16] == depths[index], self.own.data[:16], self.own.data[:16] + 1))
+            full = self.own.data[:16] == self._choose([C(one.depth, 16) for one in own.writers])
+            m.d.sync += self._kept.eq(Mux(full, self.own.data, self._increased))
             m.next = "KEEP"
         with m.State("KEEP"):
-            full = words_kept == limits[index]
-            for n, stream in enumerate(streams):
-                with m.If(local == n):
-                    m.d.comb += stream.ready.eq(1)
-            m.d.sync += padding.eq(item.payload.padding)
-            m.d.sync += first.eq(last - kept + 1)
-            with m.If(item.valid & ~item.payload.end):
-                m.d.sync += words_kept.eq(words_kept + ~full)
-                self._write(m, sample + 1 + words_kept, item.payload.data)
+            full = words == self._choose([C(one.words, 16) for one in own.writers])
+            for n, one in enumerate(streams):
+                with m.If(self._local == n):
+                    m.d.comb += one.ready.eq(1)
+            with m.If(valid & ~item.end):
                 with m.If(full):
-                    m.d.comb += self.write.en.eq(0)
                     m.d.sync += long.eq(1)
-            with m.If(item.valid & item.payload.end):
+                with m.Else():
+                    m.d.sync += words.eq(words + 1)
+                    self._write(m, subject.sample + 1 + words, item.data)
+            with m.If(valid & item.end):
+                m.d.sync += [self._padding.eq(item.padding), subject.words.eq(words)]
                 m.next = "SIZE"
-                with m.If(item.payload.bad | long):
+                with m.If(item.bad | long):
                     for n in range(self._users):
-                        m.d.comb += getattr(self, f"drop_long{n}").eq((local == n) & ~item.payload.bad)
-                    m.d.sync += turn.eq(1)
+                        m.d.comb += getattr(self, f"drop_long{n}").eq((self._local == n) & ~item.bad)
+                    m.d.sync += self._yield.eq(1)
                     m.next = "IDLE"
         with m.State("SIZE"):
-            self._write(m, sample, Cat(words_kept, padding))
-            m.d.sync += [subject.words.eq(words_kept), endpoint.eq(0)]
+            self._write(m, subject.sample, Cat(words, self._padding))
             m.next = "STORE"
         with m.State("STORE"):
-            self._write(m, writer_word(tables.WRITER_LAST), last)
+            self._write(m, self._writer_word(tables.WRITER_LAST), self._last)
             m.next = "STORE HIGH"
         with m.State("STORE HIGH"):
-            self._write(m, writer_word(tables.WRITER_LAST_HI), last_high)
+            self._write(m, self._writer_word(tables.WRITER_LAST_HI), self._last_high)
             m.next = "STORE KEPT"
         with m.State("STORE KEPT"):
-            self._write(m, writer_word(tables.WRITER_COUNT), kept)
+            self._write(m, self._writer_word(tables.WRITER_COUNT), self._kept)
             m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.INFO))
-            m.next = "READER"
-        with m.State("READER"):
+            m.next = "EACH READER"
+        with m.State("EACH READER"):
             info = self.peers.data
             m.d.sync += [
-                slot.eq(info[tables.INFO_SLOT : tables.INFO_SLOT + 8]),
-                reliable.eq(info[tables.INFO_RELIABLE]),
-                first.eq(last - kept + 1),
+                subject.slot.eq(info[tables.INFO_SLOT : tables.INFO_SLOT + 8]),
+                self._reliable.eq(info[tables.INFO_RELIABLE]),
+                self._oldest.eq((self._kept - 1)[:16].as_signed()),
             ]
-            ours = (
-                self.matched.bit_select(endpoint[: peers.endpoint_bits], 1)
-                & ~info[tables.INFO_WRITER]
-                & (info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8] == local)
-            )
+            ours = self.matched.bit_select(endpoint[: peers.endpoint_bits], 1) & ~info[tables.INFO_WRITER]
+            ours &= info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8] == self._local
             m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.IP))
-            m.next = "READER IP"
+            m.next = "READER WHERE"
             with m.If(~ours):
-                m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint + 1, tables.INFO))
-                m.d.sync += endpoint.eq(endpoint + 1)
-                m.next = "READER"
-                with m.If(endpoint == peers.endpoints - 1):
-                    m.d.sync += turn.eq(1)
-                    m.next = "IDLE"
-        with m.State("READER IP"):
+                self._next_reader(m)
+        with m.State("READER WHERE"):
             m.d.sync += self.ip.eq(self.peers.data)
             m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.PORT))
             m.next = "READER PORT"
@@ -496,16 +469,21 @@ class Sender(wiring.Component):
             m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.START))
             m.next = "READER START"
         with m.State("READER START"):
-            with m.If(behind(self.peers.data, first)):
-                m.d.sync += first.eq(self.peers.data)
-            with m.If(reliable):
+            age = self._age_of(self.peers.data)
+            with m.If(age < self._oldest):
+                m.d.sync += self._oldest.eq(age)
+            with m.If(self._reliable):
                 m.next = "HEARTBEAT"
             with m.Else():
-                compose(rom.start["message"], "NEXT READER")
+                self._compose(m, self._rom.start["message"], "NEXT READER")
         with m.State("NEXT READER"):
-            m.d.sync += endpoint.eq(endpoint + 1)
-            m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint + 1, tables.INFO))
-            m.next = "READER"
-            with m.If(endpoint == peers.endpoints - 1):
-                m.d.sync += turn.eq(1)
-                m.next = "IDLE"
+            self._next_reader(m)
+
+    def _next_reader(self, m: Module) -> None:
+        endpoint = self.subject.endpoint
+        m.d.comb += self.peers.addr.eq(self._peers.endpoint(endpoint + 1, tables.INFO))
+        m.d.sync += endpoint.eq(endpoint + 1)
+        m.next = "EACH READER"
+        with m.If(endpoint == self._peers.endpoints - 1):
+            m.d.sync += self._yield.eq(1)
+            m.next = "IDLE"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from amaranth.hdl import Cat, Module, Mux, Signal, Value
+from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -79,7 +79,7 @@ class Submessages(wiring.Component):
                 "peers": Out(ReadSignature(peers.address_bits)),
                 "write": Out(WriteSignature(peers.address_bits)),
                 "due": Out(1),
-                "due_proxy": Out(range(peers.proxies)),
+                "due_proxy": Out(peers.proxy_bits),
                 **{f"drop_{name}": Out(1) for name in ("unmatched", "old", "early", "busy", "invalid")},
             }
         )
@@ -98,7 +98,22 @@ class Submessages(wiring.Component):
         ]
 
         # What is known of this submessage
-        sn, wanted = Signal(64), Signal(64)
+        # Numbers are compared by the difference of their lower halves, so that nothing happens where these begin anew.
+        sn, wanted = Signal(64), Signal(32)
+        wanted_high = Signal(32)
+        ahead = Signal(32)
+        same, behind = Signal(), Signal()  # the number as the one that is wanted, or before it
+        known = Signal()  # what is wanted
+        legal = Signal()  # as a number
+        after, after_high = Signal(32), Signal(32)  # the number behind `sn`
+        m.d.comb += Cat(after, after_high).eq(sn + 1)
+        m.d.comb += [
+            ahead.eq(sn[:32] - wanted),
+            same.eq(ahead == 0),
+            behind.eq(ahead[31]),
+            known.eq(wanted != 0),
+            legal.eq(~sn[63] & (sn != 0)),
+        ]
         for_any = Signal()  # reader id unknown
         reader_number = Signal(8)
         builtin, builtin_kind, spdp = Signal(), Signal(2), Signal()
@@ -112,11 +127,8 @@ class Submessages(wiring.Component):
         last_lo = Signal(32)
         options = Signal(2)
         reliable = info[tables.INFO_RELIABLE] | builtin
-        proxy = Mux(
-            builtin,
-            Cat(builtin_kind, meta.slot),
-            tables.BUILTINS * self._peers.participants + endpoint,
-        )
+        index = Mux(builtin, Cat(builtin_kind, meta.slot), endpoint)[: self._peers.index_bits]
+        proxy = Cat(index, C(0, self._peers.index_bits - len(index)), ~builtin)
         more, more_proxy = Signal(), Signal.like(self.due_proxy)  # is to be asked for when this datagram is over
         m.d.comb += self.due_proxy.eq(proxy)
         with m.If(more & self.over):
@@ -213,11 +225,11 @@ class Submessages(wiring.Component):
                 take("SN HIGH")
             with m.State("LOAD"):
                 m.d.comb += self.peers.addr.eq(at(tables.NEXT_HI))
-                m.d.sync += wanted[:32].eq(self.peers.data)
+                m.d.sync += wanted.eq(self.peers.data)
                 m.next = "LOAD HIGH"
             with m.State("LOAD HIGH"):
                 m.d.comb += self.peers.addr.eq(at(tables.LAST))
-                m.d.sync += wanted[32:].eq(self.peers.data)
+                m.d.sync += wanted_high.eq(self.peers.data)
                 m.next = "LOAD LAST"
             with m.State("LOAD LAST"):
                 m.d.sync += last_lo.eq(self.peers.data)
@@ -240,7 +252,7 @@ class Submessages(wiring.Component):
                     with m.If(came):
                         m.d.sync += skip.eq(skip - 1)
                     take("EXTRA")
-                with m.Elif(sn[63] | (sn == 0)):
+                with m.Elif(~legal):
                     m.next = "INVALID"
                 with m.Elif(meta.flags & data_submessage.FLAG_Q):
                     m.next = "QOS"
@@ -257,9 +269,9 @@ class Submessages(wiring.Component):
                     m.next = "DISCOVERY"
                 with m.Elif(~found | (~builtin & ~for_us)):
                     m.d.sync += reason.eq(unmatched)
-                with m.Elif((sn < wanted) & (wanted != 0)):
+                with m.Elif(behind & known):
                     m.d.sync += reason.eq(old)
-                with m.Elif(reliable & (sn != wanted) & (wanted != 0)):
+                with m.Elif(reliable & ~same & known):
                     m.d.sync += reason.eq(early)
                 with m.Elif(builtin):
                     m.next = "DISCOVERY"
@@ -291,19 +303,19 @@ class Submessages(wiring.Component):
                     m.next = "ADVANCE"
             with m.State("ADVANCE"):
                 m.d.comb += i.ready.eq(came)
-                m.d.sync += wanted.eq(sn + 1)
+                m.d.sync += [wanted.eq(after), wanted_high.eq(after_high)]
                 with m.If(good):
                     m.next = "WRITE LOW"
                 with m.Elif(ended):
                     m.next = "INVALID"
             with m.State("WRITE LOW"):
-                m.d.comb += put(tables.NEXT_LO, wanted[:32])
+                m.d.comb += put(tables.NEXT_LO, wanted)
                 m.next = "WRITE HIGH"
             with m.State("WRITE HIGH"):
-                m.d.comb += put(tables.NEXT_HI, wanted[32:])
+                m.d.comb += put(tables.NEXT_HI, wanted_high)
                 m.d.comb += i.ready.eq(1)
                 # Of what a heartbeat told of, there is more.
-                with m.If(is_data & reliable & ~(last_lo - wanted[:32])[31]):
+                with m.If(is_data & reliable & ~(last_lo - wanted)[31]):
                     m.d.sync += [more.eq(1), more_proxy.eq(proxy)]
                 m.next = "IDLE"
             with m.State("DISCOVERY"):
@@ -338,12 +350,13 @@ class Submessages(wiring.Component):
             # -- HEARTBEAT and GAP: two numbers
             with m.State("LAST HIGH"):
                 # What is kept aside is the lower first; a GAP's list has its base here.
-                with m.If((meta.id == submessage.HEARTBEAT) & (wanted != 0) & (sn > wanted)):
-                    m.d.sync += wanted.eq(sn)
-                with m.If(sn[63] | (sn == 0)):
+                with m.If(~legal):
                     m.next = "INVALID"
                 with m.Else():
-                    m.d.sync += skip[0].eq(sn <= wanted)  # a GAP begins here or before
+                    # A GAP must begin here or before, and then moves what is wanted to where it ends; a HEARTBEAT at once.
+                    with m.If((meta.id == submessage.HEARTBEAT) & known & ~behind):
+                        m.d.sync += [wanted.eq(sn), wanted_high.eq(sn[32:])]
+                    m.d.sync += skip[0].eq(same | behind)
                     with m.If(came):
                         m.d.sync += sn[32:].eq(number)
                     take("LAST LOW")
@@ -354,11 +367,11 @@ class Submessages(wiring.Component):
                     m.next = "GAP BITS"
             with m.State("COUNT"):
                 m.d.sync += last_lo.eq(sn[:32])
-                with m.If(wanted == 0):
-                    m.d.sync += wanted.eq(sn + 1)
+                with m.If(~known):
+                    m.d.sync += [wanted.eq(after), wanted_high.eq(after_high)]
                 take("HEARD")
             with m.State("HEARD"):
-                missing = sn >= wanted
+                missing = ~behind
                 with m.If(came | (ended & ~found)):
                     m.d.comb += i.ready.eq(1)
                 with m.If(ended & ~found):
@@ -372,14 +385,18 @@ class Submessages(wiring.Component):
                     m.next = "INVALID"
             # -- sets of numbers, from `sn` on
             with m.State("GAP BITS"):
-                with m.If(skip[0] & (wanted != 0) & (sn > wanted)):
-                    m.d.sync += wanted.eq(sn)
+                with m.If(skip[0] & known & ~behind):
+                    m.d.sync += [wanted.eq(sn), wanted_high.eq(sn[32:])]
                 self._bits(m, number, came, ended, skip, "GAP SET")
             with m.State("GAP SET"):
                 # The run of ones at the beginning of the first word, a bit each cycle; those behind it are asked for again.
                 one = number.bit_select(~last_lo[:5], 1)
-                with m.If(came & (skip != 0) & ~last_lo[5] & one & (sn == wanted)):
-                    m.d.sync += [sn.eq(sn + 1), wanted.eq(wanted + 1), last_lo.eq(last_lo + 1), skip.eq(skip - 1)]
+                with m.If(came & (skip != 0) & ~last_lo[5] & one & same):
+                    m.d.sync += [
+                        Cat(sn, wanted, wanted_high).eq(Cat(after, after_high, after, after_high)),
+                        last_lo.eq(last_lo + 1),
+                        skip.eq(skip - 1),
+                    ]
                 with m.Else():
                     m.d.comb += i.ready.eq(came)
                     with m.If(came):
@@ -405,10 +422,10 @@ class Submessages(wiring.Component):
                     m.next = "IDLE"
             with m.State("ASK FROM"):
                 m.d.comb += put(tables.ASK_FROM, sn[:32])
-                m.d.sync += wanted[:32].eq(sn[:32] + skip[:9] - 1)
+                m.d.sync += wanted.eq(sn[:32] + (skip[:9] - 1))
                 m.next = "ASK TO"
             with m.State("ASK TO"):
-                m.d.comb += put(tables.ASK_TO, wanted[:32])
+                m.d.comb += put(tables.ASK_TO, wanted)
                 m.d.comb += [self.due.eq((skip != 0) | ~(meta.flags & FLAG_F).any()), i.ready.eq(1)]
                 m.next = "IDLE"
         return m

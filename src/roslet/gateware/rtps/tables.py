@@ -80,8 +80,9 @@ class PeerMap:
         )
         (self._participants, self._builtins, self._endpoints, self._scratch), self.depth = _aligned(sizes)
         self.address_bits = _bits(self.depth)
-        self.proxies = BUILTINS * participants + endpoints
-        """Proxies are numbered: builtin ones `4 * slot + kind`, then the users'."""
+        self.index_bits = max(2 + self.slot_bits, self.endpoint_bits)
+        self.proxy_bits = self.index_bits + 1
+        """Proxies are numbered: builtin ones `4 * slot + kind`, users' ones with the highest bit set."""
 
     def _at(self, base: int, low: Value) -> Value:
         """`base` plus what is below its alignment."""
