@@ -164,7 +164,18 @@ def test_sliplib_reads_what_is_sent_however_small_the_memory(stalls: int) -> Non
 
 @pytest.mark.parametrize("stalls", STALLS)
 def test_packets_that_end_badly_or_are_empty_or_too_long_leave_nothing_on_the_line(stalls: int) -> None:
-    packets = [Bad(b"x"), b"one", b"", Bad(b""), Bad(b"yy"), b"z" * 16, b"w" * 15, b"v" * 99, Bad(b"u" * 99), b"two"]
+    packets = [
+        Bad(b"x"),
+        b"one",
+        b"",
+        Bad(b""),
+        Bad(b"yy"),
+        b"z" * 16,
+        b"w" * 15,
+        b"v" * 99,
+        Bad(b"u" * 99),
+        b"two",
+    ]
     octets, dropped = transmit(packets, stalls, depth=16)
     assert octets == [octet for packet in (b"one", b"w" * 15, b"two") for octet in framed(packet)]
     assert dropped == 2

@@ -21,7 +21,9 @@ def levels(octet: int, stop: int = 1) -> list[int]:
 class Wire:
     """A receiver, what it gave, and a wire whose bits take `bit` cycles of it, from any phase on (in bits)."""
 
-    def __init__(self, divisor: int = DIVISOR, bit: float | None = None, phase: float = 0.0, stalls: int = 0) -> None:
+    def __init__(
+        self, divisor: int = DIVISOR, bit: float | None = None, phase: float = 0.0, stalls: int = 0
+    ) -> None:
         self.bench = Bench(UartRx(divisor), stalls=0)
         self.divisor = divisor
         self.bit = float(divisor) if bit is None else bit

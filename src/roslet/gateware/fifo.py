@@ -175,8 +175,8 @@ class WholeFrameFifo(wiring.Component):
 
     For what cannot be taken back once it has begun. Throughput one item a cycle at `i`, one in two cycles at `o`; a frame
     begins 3 cycles after its end was taken. Full, it makes `i` wait while it has a whole frame. A frame that ends badly, or
-    has no octets, leaves nothing. One of `depth` octets or more can never be whole: it is dropped, and `drop_too_long` is high
-    for one cycle where its end is good.
+    has no octets, leaves nothing. One of `depth` octets or more can never be whole: it is dropped, and `drop_too_long` is
+    high for one cycle where its end is good.
     """
 
     def __init__(self, depth: int) -> None:

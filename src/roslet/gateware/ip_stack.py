@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from amaranth.hdl import Module
@@ -10,6 +9,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
 from roslet.gateware.arbiter import FrameArbiter
+from roslet.gateware.drops import drop_outputs
 from roslet.gateware.fifo import FrameRegister
 from roslet.gateware.icmp import MAX_DATA, IcmpEcho
 from roslet.gateware.ipv4_rx import Ipv4Rx, ProtocolSwitch
@@ -28,16 +28,6 @@ from roslet.gateware.reassembly import Reassembly
 from roslet.gateware.stream import FrameSignature
 from roslet.gateware.udp import UdpRx, UdpTx
 from roslet.wire.net import ethernet, ipv4
-
-
-def drop_outputs(blocks: Mapping[str, Any]) -> dict[str, tuple[str, str]]:
-    """`drop_<block>_<reason>` for each output `drop_<reason>` of the blocks: the block and its output by that name."""
-    return {
-        f"drop_{block}_{name.removeprefix('drop_')}": (block, name)
-        for block, component in blocks.items()
-        for name in component.signature.members
-        if name.startswith("drop_")
-    }
 
 
 def register(m: Module, name: str, meta: Any, source: Any, sink: Any) -> None:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from amaranth.hdl import Module, Mux, Signal
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
+from roslet.gateware.drops import drop_outputs
 from roslet.gateware.fifo import WholeFrameFifo
 from roslet.gateware.stream import FrameSignature
-from roslet.gateware.uart import UART_RX
+from roslet.gateware.uart import UART_RX, UartRx, UartTx
 from roslet.wire.net import ethernet, slip
 
 
@@ -17,8 +20,8 @@ class SlipRx(wiring.Component):
 
     Ports: `i`, octets of a line; `o`, packets of up to `max_size` octets, of which none is empty.
 
-    Throughput one octet a cycle, without a register: an octet is at `o` in the cycle in which it comes, and `i` waits only for
-    `o`. Holds nothing but a count.
+    Throughput one octet a cycle, without a register: an octet is at `o` in the cycle in which it comes, and `i` waits only
+    for `o`. Holds nothing but a count.
 
     Dropped, and counted when it is seen: `drop_line`, a bad octet; `drop_escape`, an ESC that neither ESC_END nor ESC_ESC
     follows; `drop_too_long`. What `o` has of such a packet ends badly at once, and nothing is taken until END has come.
@@ -110,11 +113,11 @@ class SlipTx(wiring.Component):
 
     Ports: `i`, packets; `o`, octets of a line.
 
-    A line cannot take back what it has sent, and no octet that would follow makes every receiver forget a packet: what spoils
-    its checksum stands in the middle of it, its length may have been reached, and the receiver of RFC 1055 makes data of a
-    wrong escape. So only whole packets are sent: they are held until their good end has come, in a memory of `depth` items
-    (a power of two), an item being an octet or an end. It is filled in a small part of the time that the line takes, and what
-    else wants to send need not wait for the line meanwhile.
+    A line cannot take back what it has sent, and no octet that would follow makes every receiver forget a packet: what
+    spoils its checksum stands in the middle of it, its length may have been reached, and the receiver of RFC 1055 makes data
+    of a wrong escape. So only whole packets are sent: they are held until their good end has come, in a memory of `depth`
+    items (a power of two), an item being an octet or an end. It is filled in a small part of the time that the line takes,
+    and what else wants to send need not wait for the line meanwhile.
 
     An octet takes two cycles at least. Packets that end badly leave nothing; `drop_too_long`, one of `depth` octets or more.
     """
@@ -155,4 +158,48 @@ class SlipTx(wiring.Component):
                 m.d.comb += [o.payload.eq(Mux(is_end, slip.ESC_END, slip.ESC_ESC)), item.ready.eq(o.ready)]
                 with m.If(o.valid & o.ready):
                     m.next = "DATA"
+        return m
+
+
+class SlipLink(wiring.Component):
+    """Packets between `sync` and a serial line, each bit of which takes `divisor` cycles: what a MAC is to Ethernet.
+
+    Ports: `uart_rx` and `uart_tx`, the pins; `rx` gives and `tx` takes IP packets of up to `max_size` octets. `tx` is held
+    in a memory of `tx_depth` items until it is whole (see `SlipTx`, and there for packets that end badly). `rx` must be
+    taken within one octet's time, 10 * `divisor` cycles, or its packet ends badly. For one cycle are high, as `UartRx`,
+    `SlipRx` and `SlipTx` have them: `drop_uart_framing drop_uart_overrun drop_rx_line drop_rx_escape drop_rx_too_long
+    drop_tx_too_long`. `drop_rx_line` is the packet that a fault of `drop_uart_*` has spoilt.
+    """
+
+    def __init__(self, divisor: int, max_size: int = ethernet.MTU, tx_depth: int = 2048) -> None:
+        if tx_depth <= max_size:
+            raise ValueError(f"{tx_depth} items do not hold a packet of {max_size} octets and its end")
+        self._tx_line = UartTx(divisor)
+        self._blocks: dict[str, Any] = {
+            "uart": UartRx(divisor),
+            "rx": SlipRx(max_size),
+            "tx": SlipTx(tx_depth),
+        }
+        self._drops = drop_outputs(self._blocks)
+        super().__init__(
+            {
+                "uart_rx": In(1, init=1),
+                "uart_tx": Out(1, init=1),
+                "rx": Out(FrameSignature()),
+                "tx": In(FrameSignature()),
+                **{name: Out(1) for name in self._drops},
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        uart, rx, tx = self._blocks.values()
+        m.submodules += [uart, rx, tx, self._tx_line]
+        connect(m, uart.o, rx.i)
+        connect(m, rx.o, flipped(self.rx))
+        connect(m, flipped(self.tx), tx.i)
+        connect(m, tx.o, self._tx_line.i)
+        m.d.comb += [uart.rx.eq(self.uart_rx), self.uart_tx.eq(self._tx_line.tx)]
+        for name, (block, output) in self._drops.items():
+            m.d.comb += getattr(self, name).eq(getattr(self._blocks[block], output))
         return m

@@ -11,10 +11,11 @@ from amaranth.lib.wiring import In, Out, connect, flipped
 from roslet.gateware import multicast
 from roslet.gateware.arbiter import FrameArbiter, LookupArbiter
 from roslet.gateware.arp import Arp
+from roslet.gateware.drops import drop_outputs
 from roslet.gateware.ethernet import EthernetRx, EthernetTx
 from roslet.gateware.icmp import MAX_DATA
 from roslet.gateware.igmp import Igmp
-from roslet.gateware.ip_stack import IpStack, drop_outputs
+from roslet.gateware.ip_stack import IpStack
 from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, LookupSignature
 from roslet.gateware.stream import FrameSignature
 

@@ -25,13 +25,13 @@ def _check(divisor: int) -> None:
 class UartRx(wiring.Component):
     """Receives octets, each bit in `divisor` cycles.
 
-    Ports: `rx`, the pin, of any clock; `o`, what was received. Each bit is what two of three samples say, one in the middle of
-    the bit and one an eighth of it to either side; what is low for less than that is no start bit. The phase is that of
+    Ports: `rx`, the pin, of any clock; `o`, what was received. Each bit is what two of three samples say, one in the middle
+    of the bit and one an eighth of it to either side; what is low for less than that is no start bit. The phase is that of
     each start bit's edge, so that the sender's clock may be off by 2.5 %. The next start bit may begin soon after the middle
     of the stop bit.
 
-    An octet is valid a few cycles after the middle of its stop bit, and waits for `o` until the next one is there, one octet's
-    time. Held are that and the one that comes.
+    An octet is valid a few cycles after the middle of its stop bit, and waits for `o` until the next one is there, one
+    octet's time. Held are that and the one that comes.
 
     Dropped: `drop_framing`, an octet without stop bit, or a break, which is one however long; `drop_overrun`, an octet that
     `o` did not take in time, in whose place the next one stands. In either case the item at `o` is `bad`.
@@ -105,8 +105,8 @@ class UartRx(wiring.Component):
 class UartTx(wiring.Component):
     """Sends octets, each bit in `divisor` cycles.
 
-    Ports: `i`, octets; `tx`, the pin, from a register. An octet is taken in the first cycle of its start bit, and the next one
-    10 bits later, so that they go without a gap where they come so. Holds the octet that is being sent.
+    Ports: `i`, octets; `tx`, the pin, from a register. An octet is taken in the first cycle of its start bit, and the next
+    one 10 bits later, so that they go without a gap where they come so. Holds the octet that is being sent.
     """
 
     def __init__(self, divisor: int) -> None:

@@ -6,8 +6,8 @@ from roslet.wire.net.slip import Decoder, emit
 
 pytestmark = pytest.mark.micropython
 
-# RFC 1055: "END is octal 300 (decimal 192) and ESC is octal 333 (decimal 219)"; what follows ESC is "octal 334 (decimal 220)"
-# for END and "octal 335 (decimal 221)" for ESC.
+# RFC 1055: "END is octal 300 (decimal 192) and ESC is octal 333 (decimal 219)"; what follows ESC is "octal 334 (decimal
+# 220)" for END and "octal 335 (decimal 221)" for ESC.
 BY_HAND = [
     (b"\x01\x02", bytes([192, 1, 2, 192])),
     (bytes([192]), bytes([192, 219, 220, 192])),
