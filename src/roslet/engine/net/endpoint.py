@@ -4,15 +4,15 @@ from roslet.wire.net import ipv4
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from roslet.engine.net.host import Host
+    from roslet.engine.net.ip_host import IpHost
 
     Address = tuple[str, int]
 
 
 class Endpoint:
-    """Made by `Host.open`. Addresses are (host, port) with the host as text, as those of sockets are."""
+    """Made by `IpHost.open`. Addresses are (host, port) with the host as text, as those of sockets are."""
 
-    def __init__(self, host: "Host", port: int) -> None:
+    def __init__(self, host: "IpHost", port: int) -> None:
         self.port = port
         self.groups: list[bytes] = []
         self.closed = False
