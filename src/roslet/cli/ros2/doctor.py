@@ -13,8 +13,9 @@ from roslet.cli.ros2.nodes import vendor_name
 from roslet.engine.ros2 import discovery_info
 from roslet.engine.ros2.context import is_old
 from roslet.errors import InvalidName, Unreachable
+from roslet.io.domain import GROUP
 from roslet.io.interfaces import choose, interfaces, require
-from roslet.io.udp import GROUP, MAX_PARTICIPANT_ID, UNICAST_IDS
+from roslet.io.udp import MAX_PARTICIPANT_ID, UNICAST_IDS
 from roslet.names import LOCALHOST, OFF, SUBNET, SYSTEM_DEFAULT, TOPIC, parse_ros2_network
 from roslet.wire.rtps import locator
 

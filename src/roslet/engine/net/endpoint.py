@@ -34,6 +34,11 @@ class Endpoint:
             raise ValueError("the endpoint of port %d is closed" % self.port)
         return self._host.send_datagram(self, data, ipv4.octets_of(address[0]), address[1], now)
 
+    @property
+    def pending(self) -> bool:
+        """Whether `receive` has something."""
+        return bool(self._received)
+
     def receive(self) -> "tuple[bytes, Address] | None":
         """The oldest datagram that came, and where it is from."""
         if not self._received:
