@@ -115,7 +115,8 @@ def test_without_groups_no_group_is_taken() -> None:
 def test_fragments_are_put_together_and_long_datagrams_are_cut() -> None:
     stack = Stack(0, mtu=296, echo_data=56)
     text = random.Random(1).randbytes(900)
-    parts = fragment(IP(src=THERE, dst=HERE, id=9) / UDP(sport=5, dport=1234) / Raw(text), fragsize=640)
+    whole = IP(src=THERE, dst=HERE, id=9) / UDP(sport=5, dport=1234) / Raw(text)
+    parts = fragment(whole, fragsize=640)  # type: ignore[no-untyped-call]
     stack.bench.send("rx", [bytes(part) for part in parts])
     meta = {
         "mac": 0,
@@ -131,8 +132,8 @@ def test_fragments_are_put_together_and_long_datagrams_are_cut() -> None:
     assert all(len(frame) <= 296 for frame, _ in stack.sent)
     first, second = (IP(frame) for frame, _ in stack.sent)
     assert (first.dst, first.flags.MF, second.frag * 8) == (ELSEWHERE, True, 272)
-    whole = UDP(bytes(first.payload) + bytes(second.payload))
-    assert (whole.sport, whole.dport, bytes(whole.payload)) == (7, 8, text[:400])
+    cut = UDP(bytes(first.payload) + bytes(second.payload))
+    assert (cut.sport, cut.dport, bytes(cut.payload)) == (7, 8, text[:400])
 
 
 def test_lookups_find_everybody_at_once() -> None:

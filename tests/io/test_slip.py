@@ -233,7 +233,7 @@ def test_a_line_that_goes_is_told_once_and_found_again(cable: Cable, monkeypatch
     warnings: list[str] = []
     with roslet.Node("one", network=url(cable, 0)) as node:
         node._network.shell.domain._warn = warnings.append  # type: ignore[attr-defined]
-        monkeypatch.setattr(slip.os, "read", read)
+        monkeypatch.setattr(os, "read", read)
         with roslet.Node("other", network=url(cable, 1)):
             assert wait(lambda: node.nodes() == ["/one", "/other"])
         assert len(warnings) == 1 and "has gone" in warnings[0]
