@@ -12,6 +12,7 @@ from roslet.names import (
     SYSTEM_DEFAULT,
     Arguments,
     Ros2Network,
+    SerialLine,
     canonical,
     check_base_name,
     check_name,
@@ -181,6 +182,18 @@ def test_other_networks_are_refused_with_a_sentence() -> None:
     [
         (None, {}, Ros2Network()),
         ("ros2://", {"ROS_DOMAIN_ID": ""}, Ros2Network()),
+        (
+            "ros2://42?slip=/dev/ttyUSB0&baud=1000000&address=10.0.0.1/24&peers=10.0.0.2",
+            {"ROS_LOCALHOST_ONLY": "1", "ROS_STATIC_PEERS": "10.9.9.9"},
+            Ros2Network(
+                42, (), (("10.0.0.2", None),), SUBNET, SerialLine("/dev/ttyUSB0", 1000000, "10.0.0.1/24")
+            ),
+        ),
+        (
+            "ros2://?slip=COM3&address=10.0.0.1/30",
+            {"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF", "ROS_DOMAIN_ID": "7"},
+            Ros2Network(7, line=SerialLine("COM3", 115200, "10.0.0.1/30")),
+        ),
         ("ros2://", {"ROS_DOMAIN_ID": "7"}, Ros2Network(7)),
         ("ros2://0", {"ROS_DOMAIN_ID": "7"}, Ros2Network(0)),
         ("ros2://42/", {}, Ros2Network(42)),
@@ -246,6 +259,17 @@ def test_a_ros2_network_is_what_the_url_says_and_else_the_environment(
         ("ros2://?interface", {}, "the option 'interface' has no value"),
         ("ros2://?peers=", {}, "the option 'peers' has no value"),
         ("ros2://?colour=red", {}, "the option 'colour=red' is none of"),
+        (
+            "ros2://?slip=/dev/ttyUSB0",
+            {},
+            "a serial line needs address=, an IPv4 address such as 10.0.0.1/24",
+        ),
+        ("ros2://?slip=a&address=10.0.0.256/24", {}, "a serial line needs address="),
+        ("ros2://?slip=a&address=10.0.0.1", {}, "there must be /24 or another prefix, 1 to 30"),
+        ("ros2://?slip=a&address=10.0.0.1/31", {}, "there must be /24 or another prefix, 1 to 30"),
+        ("ros2://?slip=a&address=10.0.0.1/24&baud=fast", {}, "'fast' is no number of bits a second"),
+        ("ros2://?baud=9600", {}, "baud= and address= go with slip="),
+        ("ros2://?slip=a&address=10.0.0.1/24&interface=lo", {}, "is a serial line or interfaces, not both"),
         ("ros2://?localhost=yes", {}, "the option 'localhost=yes' is none of"),
         ("ros2://?peers=10.0.0.7:0", {}, "a peer is host or host:port (IPv4 only), not '10.0.0.7:0'"),
         ("ros2://?peers=10.0.0.7:65536", {}, "a peer is host or host:port"),

@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 from amaranth.hdl import Module, Signal
 from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out
+
+
+def drop_outputs(blocks: Mapping[str, Any]) -> dict[str, tuple[str, str]]:
+    """`drop_<block>_<reason>` for each output `drop_<reason>` of the blocks: the block and its output by that name."""
+    return {
+        f"drop_{block}_{name.removeprefix('drop_')}": (block, name)
+        for block, component in blocks.items()
+        for name in component.signature.members
+        if name.startswith("drop_")
+    }
 
 
 class DropCounters(wiring.Component):

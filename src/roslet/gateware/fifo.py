@@ -8,7 +8,7 @@ come. An item takes 9 bits of memory, the width of common block RAMs: at an end 
 from __future__ import annotations
 
 from amaranth.hdl import Cat, Module, Mux, ShapeLike, Signal, Value
-from amaranth.lib import data, stream, wiring
+from amaranth.lib import data, memory, stream, wiring
 from amaranth.lib.cdc import PulseSynchronizer
 from amaranth.lib.fifo import SyncFIFOBuffered
 from amaranth.lib.wiring import In, Out
@@ -167,4 +167,70 @@ class LossyFrameFifo(wiring.Component):
                         m.next = "DROP"
             with m.State("DROP"), m.If(i.valid & i.payload.end):
                 m.next = "PASS"
+        return m
+
+
+class WholeFrameFifo(wiring.Component):
+    """A queue of `depth` items, a power of two, within `sync`, that gives only whole frames whose ends are good: `i` to `o`.
+
+    For what cannot be taken back once it has begun. Throughput one item a cycle at `i`, one in two cycles at `o`; a frame
+    begins 3 cycles after its end was taken. Full, it makes `i` wait while it has a whole frame. A frame that ends badly, or
+    has no octets, leaves nothing. One of `depth` octets or more can never be whole: it is dropped, and `drop_too_long` is
+    high for one cycle where its end is good.
+    """
+
+    def __init__(self, depth: int) -> None:
+        if depth < 2 or depth & (depth - 1):
+            raise ValueError(f"a queue of whole frames has places for a power of two of items, not {depth}")
+        self._depth = depth
+        super().__init__({"i": In(FrameSignature()), "o": Out(FrameSignature()), "drop_too_long": Out(1)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        i, o = self.i.stream, self.o.stream
+        m.submodules.items = items = memory.Memory(shape=_WIDTH, depth=self._depth, init=[])
+        write, read = items.write_port(), items.read_port()
+
+        # One bit more than an address: the places between two of these are known by their difference.
+        pointer = range(2 * self._depth)
+        written, whole, taken = Signal(pointer), Signal(pointer), Signal(pointer)
+        full, none = Signal(), Signal()
+        m.d.comb += [
+            full.eq((written ^ taken) == self._depth),
+            none.eq(whole == taken),
+            write.addr.eq(written),
+            write.data.eq(_pack(i.payload)),
+        ]
+        with m.FSM():
+            with m.State("PASS"):
+                m.d.comb += [i.ready.eq(~full), write.en.eq(i.valid & ~full)]
+                with m.If(write.en):
+                    m.d.sync += written.eq(written + 1)
+                    with m.If(i.payload.end):
+                        with m.If(i.payload.bad | (written == whole)):
+                            m.d.sync += written.eq(whole)
+                        with m.Else():
+                            m.d.sync += whole.eq(written + 1)
+                with m.Elif(full & none & i.valid):
+                    m.d.sync += written.eq(whole)
+                    m.next = "DROP"
+            with m.State("DROP"):
+                m.d.comb += i.ready.eq(1)
+                with m.If(i.valid & i.payload.end):
+                    m.d.comb += self.drop_too_long.eq(~i.payload.bad)
+                    m.next = "PASS"
+
+        # An item is at `o` until it has been taken; only then the next is read.
+        fetched = Signal()
+        end = read.data[8]
+        m.d.comb += [
+            read.addr.eq(taken),
+            read.en.eq(~none & ~fetched),
+            o.valid.eq(fetched),
+            o.payload.data.eq(read.data[:8]),
+            o.payload.end.eq(end),
+        ]
+        m.d.sync += fetched.eq(~none & (~fetched | ~o.ready))
+        with m.If(fetched & o.ready):
+            m.d.sync += taken.eq(taken + 1)
         return m

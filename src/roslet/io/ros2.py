@@ -4,15 +4,28 @@ from __future__ import annotations
 
 from roslet.engine.ros2 import user_data
 from roslet.engine.ros2.context import Context
-from roslet.io.udp import Domain
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Any
 
+    from roslet.io.domain import ParticipantShell
     from roslet.io.select import Reactor, Timer
+    from roslet.io.slip import SlipDomain
+    from roslet.io.udp import Domain
     from roslet.names import Ros2Network
+
+
+def _kind(network: Ros2Network) -> type[Domain] | type[SlipDomain]:
+    """What carries the datagrams of a network; of serial lines only who has one need know."""
+    if network.line is None:
+        from roslet.io.udp import Domain
+
+        return Domain
+    from roslet.io.slip import SlipDomain
+
+    return SlipDomain
 
 
 class Ros2Shell:
@@ -32,7 +45,7 @@ class Ros2Shell:
         self._armed = 0.0
         self._closed = False
         # Samples of our own writers for our own readers take a shorter way: see roslet.node.ros2.topics.
-        self.domain = Domain(
+        self.domain: ParticipantShell = _kind(network)(
             reactor,
             self._event,
             network,

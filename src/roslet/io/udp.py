@@ -7,23 +7,18 @@ reactor's lock held.
 from __future__ import annotations
 
 import errno
-import os
 import socket
 import struct
 import sys
-import time
 from time import monotonic
 
-from roslet.engine.rtps.limits import Limits
-from roslet.engine.rtps.participant import Participant
-from roslet.engine.rtps.writer import HEARTBEAT_DELAY
 from roslet.errors import Unreachable
+from roslet.io.domain import GROUP, ParticipantShell
 from roslet.io.interfaces import LOOPBACK, Interface, Watch, choose, interfaces, require
 from roslet.io.memory import keep_large_blocks
 from roslet.io.resolver import AGAIN, Resolver, literal
 from roslet.names import OFF, SUBNET, SYSTEM_DEFAULT, Ros2Network
 from roslet.wire.rtps import locator
-from roslet.wire.rtps.guid import VENDORID_ROSLET
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -34,7 +29,6 @@ if TYPE_CHECKING:
     from roslet.io.select import Reactor, Timer
     from roslet.wire.rtps.locator import Locator
 
-GROUP = "239.255.0.1"
 # Participants of one host and domain: the ports of more would run into those of the next domain.
 MAX_PARTICIPANT_ID = 119
 # Participant ids of a host that are announced to where a peer is given without a port, as Fast DDS and Cyclone do it, and on
@@ -55,16 +49,7 @@ LARGE = 32 << 10
 _IP_MULTICAST_ALL = 49  # linux/in.h
 
 
-def new_guid_prefix() -> bytes:
-    """Our vendor id, the process, and chance."""
-    return VENDORID_ROSLET + struct.pack(">H", os.getpid() & 0xFFFF) + os.urandom(8)
-
-
-def _warn(text: str) -> None:
-    print("roslet:", text, file=sys.stderr)
-
-
-class Domain:
+class Domain(ParticipantShell):
     """One participant of a domain and its sockets, on a reactor.
 
     `network`: which domain, over which interfaces, and how far; a domain id alone means all interfaces and SUBNET. With the
@@ -91,15 +76,7 @@ class Domain:
             raise ValueError(f"a domain id is 0 to {locator.MAX_DOMAIN_ID}, not {network.domain_id}")
         found = interfaces()
         require(found, network.interfaces)
-        self.reactor = reactor
-        self.network = network
-        self.domain_id = network.domain_id
-        self.errors: dict[str, int] = {}
-        self._on_event = on_event
-        self._warn = warn or _warn
-        self._timer: Timer | None = None
-        self._armed = 0.0
-        self._closed = False
+        super().__init__(reactor, on_event, network, warn)
         self._buffer = bytearray(65536)
         self._view = memoryview(self._buffer)
         self.participant_id, self._meta, self._user = self._bind(self.domain_id)
@@ -113,19 +90,14 @@ class Domain:
         }
         self._interfaces: list[Interface] = []
         self._use(choose(found, network.interfaces))
-        if network.range == OFF:
-            fields["limits"] = (fields.get("limits") or Limits()).replace(participants=0)
         own = self._locators()
-        self.participant = Participant(
-            fields.pop("guid_prefix", None) or new_guid_prefix(),
-            self.domain_id,
+        self.participant = self._make(
             own["metatraffic_unicast"],
             own["default_unicast"],
+            own["metatraffic_multicast"],
             self._announce_to(),
-            epoch=time.time_ns() - int(time.monotonic() * 1e9),
-            multicast=own["metatraffic_multicast"],
-            networks=self._networks(),
-            **fields,
+            self._networks(),
+            fields,
         )
         for one in (self._meta, self._user, self._group):
             if one is not None:
@@ -214,10 +186,7 @@ class Domain:
     def _ports_of(self, address: str) -> list[Address]:
         """Where participants of a host may listen; not our own port on this one."""
         skip = self.participant_id if address == LOOPBACK or address in self.addresses else -1
-        ports = [
-            locator.metatraffic_unicast_port(self.domain_id, one) for one in range(UNICAST_IDS) if one != skip
-        ]
-        return [(address, port) for port in ports if port < 65536]
+        return self._ports_from(address, [one for one in range(UNICAST_IDS) if one != skip])
 
     def _watching(self) -> Watch | None:
         try:
@@ -316,14 +285,6 @@ class Domain:
             raise
         return sender
 
-    def _failed(self, what: str, error: OSError) -> None:
-        name = f"{what}-{os.strerror(error.errno or 0).lower().replace(' ', '-')}"
-        self.errors[name] = self.errors.get(name, 0) + 1
-
-    def _count(self, reason: str) -> None:
-        counters = self.participant.counters
-        counters[reason] = counters.get(reason, 0) + 1
-
     # -- the loop
 
     def _reader_of(self, one: socket.socket) -> Callable[[int], None]:
@@ -361,47 +322,6 @@ class Domain:
             self.flush()
 
         return readable
-
-    def _tell(self) -> None:
-        for event in self.participant.take_events():
-            self._on_event(event)
-
-    def flush(self) -> None:
-        """Do what is due, send what is pending, and wake up in time for the rest. Call it with the reactor's lock held."""
-        if self._closed:
-            return
-        now = monotonic()
-        participant = self.participant
-        participant.handle_deadline(now)
-        for parts, addresses in participant.datagrams_to_send(now):
-            self._send(parts, addresses)
-        if participant.pending_events:
-            self._tell()
-        at = participant.deadline()
-        if at is None:
-            return
-        if self._timer is not None and self._timer.function is not None:
-            if self._armed <= at:
-                return
-            self._timer.cancel()
-        self._armed = at
-        self._timer = self.reactor.call_at(at, self._due)
-
-    def send(self, now: float) -> None:
-        """The short way after `Writer.write`: send what is pending, and leave what is not urgent to the timer if it goes off
-        in time. `now` as given to `write`; with the reactor's lock held."""
-        if self._timer is None or self._armed > now + HEARTBEAT_DELAY or self._closed:
-            self.flush()
-            return
-        outbox = self.participant.outbox
-        for parts, addresses in outbox.take(now):
-            self._send(parts, addresses)
-        if outbox.deadline() is not None:
-            self.flush()
-
-    def _due(self) -> None:
-        self._timer = None
-        self.flush()
 
     def _send(self, parts: Any, addresses: Sequence[Address]) -> None:
         for address in addresses:

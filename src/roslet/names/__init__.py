@@ -6,6 +6,7 @@ imported from anywhere, and imports only `errors` and `record`. Runs on MicroPyt
 
 from roslet.names.characters import MAX_NAME
 from roslet.names.networks import (
+    DEFAULT_BAUD,
     DEFAULT_MASTER,
     LOCALHOST,
     MAX_DOMAIN,
@@ -16,6 +17,7 @@ from roslet.names.networks import (
     SUBNET,
     SYSTEM_DEFAULT,
     Ros2Network,
+    SerialLine,
     parse_host_port,
     parse_network,
     parse_ros2_network,
@@ -53,6 +55,7 @@ from roslet.names.ros2 import (
 )
 
 __all__ = [
+    "DEFAULT_BAUD",
     "DEFAULT_MASTER",
     "LOCALHOST",
     "MAX_DOMAIN",
@@ -73,6 +76,7 @@ __all__ = [
     "Remapping",
     "Ros2Arguments",
     "Ros2Network",
+    "SerialLine",
     "canonical",
     "check_base_name",
     "check_full_name",

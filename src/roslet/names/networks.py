@@ -78,17 +78,35 @@ RANGES = (OFF, LOCALHOST, SUBNET, SYSTEM_DEFAULT)
 """How far a ROS 2 node looks for others, as $ROS_AUTOMATIC_DISCOVERY_RANGE spells it."""
 
 
+# What a serial line has where nobody says otherwise.
+DEFAULT_BAUD = 115200
+
+
+class SerialLine(Record):
+    """A serial line in place of interfaces: `device`, its path; `baud`, bits a second; `address`, ours on it, with the
+    length of the prefix behind a slash."""
+
+    _fields = ("device", "baud", "address")
+    __slots__ = _fields
+
+    def __init__(self, device: str, baud: int, address: str) -> None:
+        self.device = device
+        self.baud = baud
+        self.address = address
+
+
 class Ros2Network(Record):
     """Which ROS 2 network, and how far it reaches.
 
     domain_id    0 to 232
     interfaces   names or IPv4 addresses of the interfaces to use; empty: all
     peers        (host, port) that are looked for besides; port None: the ports of participants 0 to 31 of that host
+    line         a serial line, which is then all of the network; None: the interfaces of this host
     range        OFF: nobody is looked for, and nobody taken; LOCALHOST: participants of this host, and static peers of
                  either side; SUBNET: whatever multicast reaches, and peers; SYSTEM_DEFAULT: as SUBNET, without peers
     """
 
-    _fields = ("domain_id", "interfaces", "peers", "range")
+    _fields = ("domain_id", "interfaces", "peers", "range", "line")
     __slots__ = _fields
 
     def __init__(
@@ -97,16 +115,22 @@ class Ros2Network(Record):
         interfaces: "tuple[str, ...]" = (),
         peers: "tuple[tuple[str, int | None], ...]" = (),
         range: str = SUBNET,  # noqa: A002 - the field's name
+        line: "SerialLine | None" = None,
     ) -> None:
         self.domain_id = domain_id
         self.interfaces = interfaces
         self.peers = peers
         self.range = range
+        self.line = line
 
     @property
     def url(self) -> str:
         """The URL that says the same."""
         options = ["interface=" + one for one in self.interfaces]
+        if self.line is not None:
+            options.append(
+                "slip=%s&baud=%d&address=%s" % (self.line.device, self.line.baud, self.line.address)
+            )
         if self.peers:
             hosts = [host if port is None else "%s:%d" % (host, port) for host, port in self.peers]
             options.append("peers=" + ",".join(hosts))
@@ -121,7 +145,9 @@ def parse_ros2_network(network: "str | None", environment: "Mapping[str, str]") 
     What the URL leaves open the environment says: ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE. ROS_STATIC_PEERS adds to
     its peers. ROS_LOCALHOST_ONLY=1 stands for the range LOCALHOST and, as in rcl, puts the environment's range and peers
     out of force. `localhost=1` in a URL is `range=localhost`. OFF and SYSTEM_DEFAULT use no peers, as in ROS 2.
-    `interface` and `peers` may be given several times. Raises InvalidName and says what is wrong.
+    `interface` and `peers` may be given several times. "ros2://42?slip=/dev/ttyUSB0&baud=1000000&address=10.0.0.1/24" is a
+    network of a serial line and nothing else; of the environment only ROS_DOMAIN_ID is said of it. Raises InvalidName and
+    says what is wrong.
     """
     text = "ros2://" if network is None else network
     scheme, found, rest = text.partition("://")
@@ -132,6 +158,7 @@ def parse_ros2_network(network: "str | None", environment: "Mapping[str, str]") 
     interfaces: list[str] = []
     peers: list[tuple[str, int | None]] = []
     reach = ""
+    serial = {"slip": "", "baud": "", "address": ""}
     for option in query.split("&") if query else ():
         key, _, value = option.partition("=")
         if not value:
@@ -142,15 +169,22 @@ def parse_ros2_network(network: "str | None", environment: "Mapping[str, str]") 
             peers += [_peer(one, text) for one in value.split(",") if one]
         elif key == "range":
             reach = _range(value.upper(), text)
+        elif key in serial:
+            serial[key] = value
         elif key == "localhost" and value in ("0", "1"):
             reach = LOCALHOST if value == "1" else reach or SUBNET
         else:
             raise InvalidName(
-                "%r: the option %r is none of interface=, peers=, range=, localhost=0 or localhost=1"
-                % (text, option)
+                "%r: the option %r is none of interface=, peers=, range=, localhost=0, localhost=1, slip=, baud= or "
+                "address=" % (text, option)
             )
+    line = _line(serial, text)
+    if line is not None and interfaces:
+        raise InvalidName("%r: a network is a serial line or interfaces, not both" % text)
     only_local = environment.get("ROS_LOCALHOST_ONLY", "") == "1"
-    if not only_local:
+    if line is not None:
+        reach = reach or SUBNET
+    elif not only_local:
         peers += [
             _peer(one, "ROS_STATIC_PEERS")
             for one in environment.get("ROS_STATIC_PEERS", "").split(";")
@@ -167,7 +201,27 @@ def parse_ros2_network(network: "str | None", environment: "Mapping[str, str]") 
     for peer in peers if reach in (LOCALHOST, SUBNET) else ():
         if peer not in distinct:
             distinct.append(peer)
-    return Ros2Network(number, tuple(interfaces), tuple(distinct), reach)
+    return Ros2Network(number, tuple(interfaces), tuple(distinct), reach, line)
+
+
+def _line(said: "dict[str, str]", where: str) -> "SerialLine | None":
+    if not said["slip"]:
+        if said["baud"] or said["address"]:
+            raise InvalidName("%r: baud= and address= go with slip=" % where)
+        return None
+    baud = said["baud"] or str(DEFAULT_BAUD)
+    if len(baud) > 8 or baud.strip(DIGITS) or not int(baud):
+        raise InvalidName("%r: %r is no number of bits a second" % (where, baud))
+    address, _, bits = said["address"].partition("/")
+    octets = address.split(".")
+    numbers = [int(one) for one in octets if 0 < len(one) <= 3 and not one.strip(DIGITS)]
+    if len(octets) != 4 or len(numbers) != 4 or max(numbers) > 255 or not 0 < numbers[0] < 224:
+        raise InvalidName("%r: a serial line needs address=, an IPv4 address such as 10.0.0.1/24" % where)
+    if not 0 < len(bits) <= 2 or bits.strip(DIGITS) or not 1 <= int(bits) <= 30:
+        raise InvalidName(
+            "%r: behind address=%s there must be /24 or another prefix, 1 to 30" % (where, address)
+        )
+    return SerialLine(said["slip"], int(baud), said["address"])
 
 
 def _domain(text: str, where: str) -> int:

@@ -13,8 +13,9 @@ from roslet.cli.ros2.nodes import vendor_name
 from roslet.engine.ros2 import discovery_info
 from roslet.engine.ros2.context import is_old
 from roslet.errors import InvalidName, Unreachable
+from roslet.io.domain import GROUP
 from roslet.io.interfaces import choose, interfaces, require
-from roslet.io.udp import GROUP, MAX_PARTICIPANT_ID, UNICAST_IDS
+from roslet.io.udp import MAX_PARTICIPANT_ID, UNICAST_IDS
 from roslet.names import LOCALHOST, OFF, SUBNET, SYSTEM_DEFAULT, TOPIC, parse_ros2_network
 from roslet.wire.rtps import locator
 
@@ -67,6 +68,8 @@ def examine(url: str, seconds: float) -> list[Finding]:
         return found
     found.append(Finding("network", INFO, f"{network.url}, discovery range {network.range}"))
     found += _range(network)
+    if network.line is not None:
+        return found + _on_a_line(network, seconds)
     chosen = choose(there, network.interfaces)
     found += _interfaces(chosen, network)
     found += _ports(network.domain_id)
@@ -97,6 +100,19 @@ def examine(url: str, seconds: float) -> list[Finding]:
         found += _dropped(counters)
         found += _graph(graph)
     return found
+
+
+def _on_a_line(network: Ros2Network, seconds: float) -> list[Finding]:
+    """What there is on a serial line; nothing of this host's interfaces matters there."""
+    try:
+        with Ros2Graph(network.url, "doctor") as graph:
+            graph.pause(seconds)
+            with graph.node.reactor.lock:
+                remotes = list(graph.net.shell.participant.spdp.remotes.values())
+                counters = dict(graph.net.shell.participant.counters)
+            return [*_participants(graph, remotes), *_dropped(counters), *_graph(graph)]
+    except Unreachable as error:
+        return [Finding("network", PROBLEM, str(error), "connect the device, or end what else has it open")]
 
 
 def environment(variables: Mapping[str, str]) -> list[Finding]:

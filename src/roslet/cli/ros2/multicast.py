@@ -9,7 +9,7 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from roslet.io.udp import GROUP
+from roslet.io.domain import GROUP
 from roslet.wire.rtps import locator
 
 if TYPE_CHECKING:

@@ -4,15 +4,15 @@ from roslet.wire.net import ipv4
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from roslet.engine.net.host import Host
+    from roslet.engine.net.ip_host import IpHost
 
     Address = tuple[str, int]
 
 
 class Endpoint:
-    """Made by `Host.open`. Addresses are (host, port) with the host as text, as those of sockets are."""
+    """Made by `IpHost.open`. Addresses are (host, port) with the host as text, as those of sockets are."""
 
-    def __init__(self, host: "Host", port: int) -> None:
+    def __init__(self, host: "IpHost", port: int) -> None:
         self.port = port
         self.groups: list[bytes] = []
         self.closed = False
@@ -33,6 +33,11 @@ class Endpoint:
         if self.closed:
             raise ValueError("the endpoint of port %d is closed" % self.port)
         return self._host.send_datagram(self, data, ipv4.octets_of(address[0]), address[1], now)
+
+    @property
+    def pending(self) -> bool:
+        """Whether `receive` has something."""
+        return bool(self._received)
 
     def receive(self) -> "tuple[bytes, Address] | None":
         """The oldest datagram that came, and where it is from."""

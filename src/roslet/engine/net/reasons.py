@@ -7,6 +7,9 @@ REASONS = {
     "ethernet-type-unknown": "a frame that holds neither IPv4 nor ARP",
     "ethernet-not-for-us": "a frame to another host, or to a group that is not joined",
     "ethernet-source-a-group": "a frame that says to come from a group address",
+    # SLIP
+    "slip-escape": "a packet with an ESC that neither ESC_END nor ESC_ESC follows",
+    "slip-too-long": "a packet longer than the line's MTU, or octets without END",
     # ARP
     "arp-truncated": "ARP shorter than 28 octets",
     "arp-not-ipv4": "ARP for something else than IPv4 over Ethernet",
