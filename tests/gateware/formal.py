@@ -243,7 +243,7 @@ def judge(specs: Sequence[Spec], depth: int, mode: str = "bmc", keep_going: bool
             script += [
                 f"read_rtlil {n}.il",
                 "prep -flatten -nordff -top top",
-                "memory_nordff",
+                "memory_map",
                 "clk2fflogic" if len(spec.domains) > 1 else "async2sync",
                 "dffunmap",
                 "chformal -lower",

@@ -367,7 +367,7 @@ def test_what_lies_outside_the_subnet_goes_to_the_gateway_which_is_asked_for_onc
     assert node.asked == [GATEWAY]
 
 
-def test_without_a_gateway_what_lies_outside_the_subnet_fails() -> None:
+def test_without_a_gateway_what_lies_outside_the_subnet_fails_but_for_groups_and_broadcast() -> None:
     node = Node()
     configure(node.bench, gateway=bytes(4))
     answers: list[Answer] = []
@@ -376,9 +376,10 @@ def test_without_a_gateway_what_lies_outside_the_subnet_fails() -> None:
         await node.rest(ctx)
         answers.append(await node.ask(ctx, address("8.8.8.8")))
         answers.append(await node.ask(ctx, address("239.1.2.3")))
+        answers.append(await node.ask(ctx, address("255.255.255.255")))
 
     node.run(process)
-    assert answers == [FAILED, found(bytes.fromhex("0100 5e01 0203"))]
+    assert answers == [FAILED, found(bytes.fromhex("0100 5e01 0203")), found(BROADCAST)]
 
 
 def test_a_link_of_two_has_no_broadcast_address() -> None:

@@ -31,8 +31,11 @@ def test_what_is_assumed_leaves_the_ordinary_possible(spec: type[Spec]) -> None:
 
 @pytest.mark.parametrize("spec", SPECS, ids=lambda spec: spec.__name__)
 def test_every_property_fails_for_a_planted_bug(spec: type[Spec]) -> None:
-    wrong = [spec(bug) for bug in spec.bugs]
-    verdicts = formal.judge(wrong, spec.quick, keep_going=True)
+    verdicts = formal.judge([spec(bug) for bug in spec.bugs], spec.quick)
     for bug, verdict in zip(spec.bugs, verdicts, strict=True):
-        assert bug.property in verdict.failed, f"{bug} is caught by {verdict.failed or 'nothing'}"
+        failed = verdict.failed
+        if bug.property not in failed:  # maybe it does later than another
+            (verdict,) = formal.judge([spec(bug)], spec.quick, keep_going=True)
+            failed = verdict.failed
+        assert bug.property in failed, f"{bug} is caught by {failed or 'nothing'}"
     assert {bug.property for bug in spec.bugs} == verdicts[0].properties

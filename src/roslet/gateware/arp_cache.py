@@ -168,7 +168,7 @@ class ArpCache(wiring.Component):
                         key.eq(Mux(inside, ip, gateway)),
                         group.eq(is_group),
                         everybody.eq(subnet | ip.all()),
-                        refused.eq(~self.enable | (ip == own) | (nowhere & ~is_group)),
+                        refused.eq(~self.enable | (ip == own) | (nowhere & ~is_group & ~ip.all())),
                     ]
                     m.next = "SCAN"
             with m.State("SCAN"):

@@ -17,6 +17,9 @@ from roslet.wire.net import ethernet, ipv4
 MAX_PAYLOAD = ethernet.MTU - ipv4.SIZE
 """What a fragment brings at most."""
 
+_UNIT = 3
+"""Bits of an octet's place in a unit of 8, in which offsets count. RFC 791, 3.1."""
+
 _KEY = ("source", "destination", "protocol", "identification")
 """What a datagram's fragments have in common. RFC 791, 3.2."""
 
@@ -67,7 +70,7 @@ class _Slot(wiring.Component):
                 "full": Out(1),
                 "complete": Out(1),
                 "expired": Out(1),
-                "total": Out(unit_bits + 3),
+                "total": Out(unit_bits + _UNIT),
             }
         )
 
@@ -96,7 +99,7 @@ class _Slot(wiring.Component):
             m.d.sync += age.eq(age + 1)
 
         at_hand = ranges[0]
-        tail, its_tail = fragment.length[:3], self.total[:3]
+        tail, its_tail = fragment.length[:_UNIT], self.total[:_UNIT]
         m.d.comb += [
             self.overlaps.eq(
                 at_hand.valid
@@ -124,7 +127,7 @@ class _Slot(wiring.Component):
             m.d.sync += self.given_up.eq(1)
         with m.If(self.accept):
             with m.If(fragment.more):
-                m.d.sync += units.eq(Mux(self.known, units, 0) + fragment.length[3:])
+                m.d.sync += units.eq(Mux(self.known, units, 0) + fragment.length[_UNIT:])
             with m.Else():
                 m.d.sync += [
                     has_last.eq(1),
@@ -167,7 +170,7 @@ class Reassembly(wiring.Component):
             raise ValueError(f"a datagram needs a slot: max_pendings is 1 at least, not {max_pendings}")
         if max_fragments < 2:
             raise ValueError(f"what has fragments has two: max_fragments is 2 at least, not {max_fragments}")
-        if max_payload < 8 or max_payload % 8:
+        if max_payload < 1 << _UNIT or max_payload % (1 << _UNIT):
             raise ValueError(f"max_payload must be a multiple of 8 octets (RFC 791, 3.2), not {max_payload}")
         self._pendings = max_pendings
         self._fragments = max_fragments
@@ -189,7 +192,7 @@ class Reassembly(wiring.Component):
         m = Module()
         i, o, mem = self.i.stream, self.o.stream, self.ip_payloadsmem
         fragment = self.i.meta
-        unit_bits = bits_for(self._room // 8)
+        unit_bits = bits_for(self._room >> _UNIT)
         slots = [_Slot(self._fragments, unit_bits) for _ in range(self._pendings)]
         chosen = Signal(range(self._pendings)) if self._pendings > 1 else Signal(1)
 
@@ -202,7 +205,7 @@ class Reassembly(wiring.Component):
         accept, give_up, rotate, take_over, done = (
             Signal(name=name) for name in ("accept", "give_up", "rotate", "take_over", "done")
         )
-        stop = Signal(14)  # of 13 bits of offset and 13 of length
+        stop = Signal(17 - _UNIT)  # the sum of an offset and a length
         for n, slot in enumerate(slots):
             m.submodules[f"slot{n}"] = slot
             mine = chosen == n
@@ -217,9 +220,9 @@ class Reassembly(wiring.Component):
 
         # -- what is wrong with a fragment
 
-        tail = fragment.length[:3]
+        tail = fragment.length[:_UNIT]
         wrong_size = Signal()
-        room = self._room // 8
+        room = self._room >> _UNIT
         m.d.comb += wrong_size.eq(
             (stop > room)
             | ((stop == room) & tail.any())
@@ -284,7 +287,7 @@ class Reassembly(wiring.Component):
                     with m.If(slot.expired):
                         m.d.comb += [expiring.eq(1 << n), self.drop_expired.eq(~slot.given_up)]
                 m.d.sync += [
-                    stop.eq(fragment.offset + fragment.length[3:]),
+                    stop.eq(fragment.offset + fragment.length[_UNIT:]),
                     overlap.eq(0),
                     repeat.eq(0),
                     rotated.eq(0),
@@ -304,7 +307,7 @@ class Reassembly(wiring.Component):
                     m.next = "DECIDE"
             with m.State("DECIDE"):
                 known = of_chosen(lambda slot: slot.known)
-                m.d.sync += at.eq(fragment.offset << 3)
+                m.d.sync += at.eq(fragment.offset << _UNIT)
                 with m.If(known & of_chosen(lambda slot: slot.given_up)):
                     drop("given_up")
                 with m.Elif(wrong_size):
