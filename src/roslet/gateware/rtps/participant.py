@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from amaranth.hdl import Cat, Module
+from amaranth.hdl import Cat, Module, Signal
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
@@ -203,8 +203,10 @@ class Participant(wiring.Component):
             for mem, name in ((peers, "peers"), (own, "own")):
                 users = [getattr(block, name) for block in group if name in block.signature.members]
                 read = mem.read_port()
+                given = Signal(32)
+                m.d.sync += given.eq(read.data)
                 m.d.comb += read.addr.eq(_either(user.addr for user in users))
-                m.d.comb += [user.data.eq(read.data) for user in users]
+                m.d.comb += [user.data.eq(given) for user in users]
         for mem, writers in (
             (peers, (walker.source, submessages.write, discovery.write)),
             (own, (sender.write,)),

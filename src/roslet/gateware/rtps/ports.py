@@ -10,8 +10,12 @@ SUBMESSAGE = data.StructLayout({"id": 8, "flags": 8, "known": 1, "slot": 8})
 """Beside the body of a submessage: its kind and flags, and which participant it is from, where that is `known`."""
 
 
+READ_LATENCY = 2
+
+
 class ReadSignature(wiring.Signature):
-    """A read port, seen from who reads: `data` is what lies at `addr`, in the next cycle.
+    """A read port, seen from who reads: `data` is what lay at `addr` two cycles before (READ_LATENCY): block RAM is slow, so
+    what it gives goes to registers first. A read may begin in each cycle.
 
     Several share a port by turns: who has no use for it keeps `addr` at zero.
     """
