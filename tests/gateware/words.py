@@ -12,7 +12,7 @@ from typing import Any
 from amaranth.hdl import Cat, Elaboratable, Module
 from amaranth.lib import memory
 
-from gateware.frames import Bad, Bench, taken
+from gateware.frames import Bad, Bench
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 
 
@@ -44,7 +44,7 @@ class WordBench(Bench):
                     ctx.set(port.meta, metas[number])
                 bad = isinstance(message, Bad)
                 pad = -len(message) % 4
-                full = message + bytes(self.random.randrange(256) for _ in range(pad))
+                full = message + (bytes(pad) if known is not None else self.random.randbytes(pad))
                 items = [{"data": word, "end": 0, "bad": 0, "padding": 0} for word in words(full)]
                 items.append(
                     {
@@ -54,19 +54,24 @@ class WordBench(Bench):
                         "padding": 0 if bad else pad,
                     }
                 )
-                told = self.random.randrange(len(items))
-                for at, item in enumerate(items):
-                    if known is not None and at >= told:
+                until_known = self.random.randrange(2 * len(items))
+
+                def tell() -> None:
+                    if known is not None:
                         ctx.set(good, not bad)
                         ctx.set(known, 1)
-                    while self.random.randrange(100) < self.stalls:
-                        await ctx.tick()
-                    if known is not None and at == len(items) - 1:
-                        ctx.set(good, not bad)
-                        ctx.set(known, 1)
-                    ctx.set(port.stream.payload, item)
-                    ctx.set(port.stream.valid, 1)
-                    await taken(ctx, port.stream)
+
+                for item in items:
+                    waiting = True
+                    while waiting:
+                        if until_known == 0 or item["end"]:
+                            tell()
+                        until_known = max(0, until_known - 1)
+                        if not ctx.get(port.stream.valid) and self.random.randrange(100) >= self.stalls:
+                            ctx.set(port.stream.payload, item)
+                            ctx.set(port.stream.valid, 1)
+                        _, _, valid, ready = await ctx.tick().sample(port.stream.valid, port.stream.ready)
+                        waiting = not (valid and ready)
                     ctx.set(port.stream.valid, 0)
                 if known is not None:
                     ctx.set(known, 0)
@@ -109,9 +114,7 @@ class WordBench(Bench):
                 if not ready:
                     continue
                 if item.end:
-                    if item.padding > len(octets):
-                        self._faults.append(f"{name}: {item.padding} octets of padding and no word")
-                    whole = bytes(octets[: len(octets) - item.padding])
+                    whole = bytes(octets[: max(0, len(octets) - item.padding)])
                     got.append((Bad(whole) if item.bad else whole, clocked[4] if has_meta else None))
                     octets.clear()
                     meta = None
