@@ -91,15 +91,15 @@ class PeerMap:
 
     def participant(self, slot: Value, word: int | Value) -> Value:
         """A word of a participant."""
-        return self._at(self._participants, Cat(_number(word, 4), slot[: self.slot_bits]))
+        return self._at(self._participants, Cat(_number(word, 4), _number(slot, self.slot_bits)))
 
     def builtin(self, slot: Value, kind: int | Value, word: int | Value) -> Value:
         """A word of a builtin proxy."""
-        return self._at(self._builtins, Cat(_number(word, 3), _number(kind, 2), slot[: self.slot_bits]))
+        return self._at(self._builtins, Cat(_number(word, 3), _number(kind, 2), _number(slot, self.slot_bits)))
 
     def endpoint(self, number: Value, word: int | Value) -> Value:
         """A word of a user proxy."""
-        return self._at(self._endpoints, Cat(_number(word, 3), number[: self.endpoint_bits]))
+        return self._at(self._endpoints, Cat(_number(word, 3), _number(number, self.endpoint_bits)))
 
     def scratch(self, word: int | Value) -> Value:
         """A word of what is being received."""
@@ -107,7 +107,10 @@ class PeerMap:
 
 
 def _number(value: int | Value, bits: int) -> Value:
-    return Const(value, bits) if isinstance(value, int) else value[:bits]
+    """So many bits, zeros where the value has less: what is above them must stay in its place."""
+    if isinstance(value, int):
+        return Const(value, bits)
+    return Cat(value[:bits], Const(0, max(0, bits - len(value))))
 
 
 @dataclass(frozen=True)
@@ -167,7 +170,7 @@ class OwnMap:
 
     def writer(self, number: Value, word: int) -> Value:
         """A word of a writer."""
-        low = Cat(Const(word, 2), number[: self.local_bits])
+        low = Cat(Const(word, 2), _number(number, self.local_bits))
         return Cat(low, Const(self._writers >> len(low), self.address_bits - len(low)))
 
     def writer_address(self, number: int, word: int) -> int:
@@ -175,7 +178,7 @@ class OwnMap:
 
     def text(self, reader: Value, is_type: Value, number: Value, word: Value) -> Value:
         """A word of a topic's name, or of its type's."""
-        low = Cat(word[: self.text_bits], number[: self.local_bits], is_type, reader)
+        low = Cat(_number(word, self.text_bits), _number(number, self.local_bits), is_type, reader)
         return Cat(low, Const(self._texts >> len(low), self.address_bits - len(low)))
 
     def text_address(self, reader: bool, is_type: bool, number: int) -> int:

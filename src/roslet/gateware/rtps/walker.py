@@ -72,7 +72,7 @@ class Walker(wiring.Component):
         m.d.comb += came.eq(i.valid & ~i.payload.end)
 
         kind, flags = Signal(8), Signal(8)
-        left = Signal(14)  # words of the submessage
+        left = Signal(15)  # words of the submessage
         to_end = Signal()  # it goes to the end of the message
         tail = Signal(2)  # octets by which its length misses whole words
         for_us = Signal()
