@@ -6,7 +6,7 @@ from amaranth.hdl import C, Cat, Module, Mux, Signal
 from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out
 
-from roslet.gateware.rtps.ports import ReadSignature
+from roslet.gateware.rtps.ports import READ_LATENCY, ReadSignature
 from roslet.gateware.rtps.rom import WORD_BITS, Op, Register, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 
@@ -16,7 +16,7 @@ it; where the message begins in our own memory, and how many words it has."""
 
 
 class Composer(wiring.Component):
-    """Runs through the template that begins at `at`, from `start`, high for a cycle, on: one word a cycle, from 2 cycles later.
+    """Runs through the template that begins at `at`, from `start`, high for a cycle, on: one word a cycle, from 6 cycles later.
 
     Ports: `subject`, steady until `done`, which is high in the cycle after the last word, or with it; `register`, in the same
     cycle, the value of the sender's that `which` names;
@@ -45,54 +45,71 @@ class Composer(wiring.Component):
         m.submodules.rom = rom = memory.Memory(shape=WORD_BITS, depth=len(self._rom.words), init=self._rom.init())
         read = rom.read_port()
         subject = self.subject
-        here = Signal.like(self.at)
-        running = Signal()  # `read.data` is a word of the template
-        argument = read.data[:32]
+        starting = Signal()
+        here = Signal.like(self.at)  # what the ROM looks at
+        # Of the template: a word comes from the ROM, then it is in `item`, then what it refers to is read, and is pushed.
+        coming, there = Signal(), Signal()
+        item = Signal(WORD_BITS)
+        argument, op = item[:32], item[32:]
         word = Signal(16)  # of the message
-        in_message = (read.data[32:] == Op.MESSAGE.value) & (word != subject.words)
+        in_message = Signal()
+        m.d.comb += in_message.eq(there & (op == Op.MESSAGE.value) & (word != subject.words))
 
-        # What is pushed in the next cycle
-        literal, source, ready = Signal(32), Signal(2), Signal()
+        literals, sources = [Signal(32), Signal(32)], [Signal(2), Signal(2)]
+        ready, over = Signal(READ_LATENCY), Signal(READ_LATENCY)
         from_literal, from_own, from_peers = range(3)
         proxy = Mux(
             subject.builtin,
             self._peers.builtin(subject.slot, subject.kind, argument[:3]),
             self._peers.endpoint(subject.endpoint, argument[:3]),
         )
+        pushes, ends = Signal(), Signal()
         m.d.comb += [
-            read.addr.eq(Mux(running, Mux(in_message, here, here + 1), self.at)),
+            read.addr.eq(here),
+            read.en.eq(~in_message),
             self.which.eq(argument[:4]),
-            self.push.eq(ready),
+            self.push.eq(ready[-1]),
             self.word.eq(
-                Mux(source == from_own, self.own.data, Mux(source == from_peers, self.peers.data, literal))
+                Mux(sources[-1] == from_own, self.own.data, Mux(sources[-1] == from_peers, self.peers.data, literals[-1]))
             ),
+            self.done.eq(over[-1]),
         ]
-        m.d.sync += ready.eq(0)
+        m.d.sync += [
+            ready.eq(Cat(pushes, ready[:-1])),
+            over.eq(Cat(ends, over[:-1])),
+            literals[1].eq(literals[0]),
+            sources[1].eq(sources[0]),
+        ]
+        with m.If(~in_message):
+            m.d.sync += [here.eq(here + 1), item.eq(read.data), there.eq(coming)]
         with m.If(self.start):
-            m.d.sync += [running.eq(1), here.eq(self.at), word.eq(0)]
-        with m.Elif(running):
-            m.d.sync += [here.eq(read.addr), ready.eq(1), source.eq(from_literal), literal.eq(argument)]
-            with m.Switch(read.data[32:]):
+            m.d.sync += [here.eq(self.at), word.eq(0), coming.eq(0), there.eq(0)]
+            m.d.sync += starting.eq(1)
+        with m.If(starting):
+            m.d.sync += [starting.eq(0), coming.eq(1)]
+        with m.If(there):
+            m.d.sync += [sources[0].eq(from_literal), literals[0].eq(argument)]
+            m.d.comb += pushes.eq(1)
+            with m.Switch(op):
                 with m.Case(Op.OWN.value):
                     m.d.comb += self.own.addr.eq(argument)
-                    m.d.sync += source.eq(from_own)
+                    m.d.sync += sources[0].eq(from_own)
                 with m.Case(Op.PARTICIPANT.value):
                     m.d.comb += self.peers.addr.eq(self._peers.participant(subject.slot, argument[:4]))
-                    m.d.sync += source.eq(from_peers)
+                    m.d.sync += sources[0].eq(from_peers)
                 with m.Case(Op.PROXY.value):
                     m.d.comb += self.peers.addr.eq(proxy)
-                    m.d.sync += source.eq(from_peers)
+                    m.d.sync += sources[0].eq(from_peers)
                 with m.Case(Op.REGISTER.value):
-                    m.d.sync += literal.eq(self.register)
+                    m.d.sync += literals[0].eq(self.register)
                 with m.Case(Op.ENTITY.value):
-                    m.d.sync += literal[16:24].eq(subject.entity)
+                    m.d.sync += literals[0][16:24].eq(subject.entity)
                 with m.Case(Op.LENGTH.value):
-                    m.d.sync += literal[16:].eq(argument[16:32] + Cat(C(0, 2), subject.words[:14]))
+                    m.d.sync += literals[0][16:].eq(argument[16:32] + Cat(C(0, 2), subject.words[:14]))
                 with m.Case(Op.MESSAGE.value):
-                    m.d.comb += self.own.addr.eq(subject.sample + 1 + word)
-                    m.d.sync += [source.eq(from_own), ready.eq(in_message), word.eq(word + 1)]
+                    m.d.comb += [self.own.addr.eq(subject.sample + 1 + word), pushes.eq(in_message)]
+                    m.d.sync += [sources[0].eq(from_own), word.eq(word + 1)]
                 with m.Case(Op.END.value):
-                    m.d.comb += self.done.eq(1)
-                    m.d.sync += [running.eq(0), ready.eq(0)]
+                    m.d.comb += [pushes.eq(0), ends.eq(1)]
+                    m.d.sync += [there.eq(0), coming.eq(0)]
         return m
-

@@ -11,7 +11,7 @@ from amaranth.lib.wiring import In, Out, connect, flipped
 from roslet.gateware.meta import ADDRESSES
 from roslet.gateware.rtps import ports, tables
 from roslet.gateware.rtps.parameters import Parameters
-from roslet.gateware.rtps.ports import DISCOVERY, ReadSignature, WriteSignature
+from roslet.gateware.rtps.ports import DISCOVERY, READ_LATENCY, ReadSignature, WriteSignature
 from roslet.gateware.rtps.scan import find_endpoint
 from roslet.gateware.rtps.tables import MAX_HISTORY, OwnMap, PeerMap
 from roslet.gateware.words import MessageSignature
@@ -76,12 +76,12 @@ class Discovery(wiring.Component):
         found = Signal()
         info = Signal(32)
         entity = Signal(32)
-        step = Signal(range(max(16, peers.endpoints + 2)))
-        before = Signal.like(step)
+        step = Signal(range(max(16, peers.endpoints + READ_LATENCY)))
+        addressed, before = Signal.like(step), Signal.like(step)  # what the memory gives next, and now
         heard = Signal(peers.participants)
         ticked, sweeping = Signal(), Signal()
         local, agreed = Signal(max(1, self._own.local_bits)), Signal()
-        m.d.sync += before.eq(step)
+        m.d.sync += [addressed.eq(step), before.eq(addressed)]
         with m.If(self.tick):
             m.d.sync += ticked.eq(1)
         with m.If(self.heard):
@@ -136,12 +136,14 @@ class Discovery(wiring.Component):
                 with m.Elif(parameters.done & is_participant):
                     m.next = "PARTICIPANT"
                 with m.Elif(parameters.done):
-                    m.next = "ENTITY"
+                    m.next = "KEY"
                     m.d.comb += address.eq(peers.scratch(tables.SCRATCH_ENTITY))
             with m.State("PROCEED"):
                 m.d.comb += parameters.proceed.eq(1)
                 m.next = "IDLE"
             self._participant(m, read, write, address, slot, step, before, heard, free)
+            with m.State("KEY"):
+                m.next = "ENTITY"
             with m.State("ENTITY"):
                 m.next = "SCAN"
                 with m.If(~read.guid):
@@ -162,7 +164,9 @@ class Discovery(wiring.Component):
                 found,
                 "ENDPOINT",
             )
-            self._endpoint(m, read, write, address, own_address, slot, endpoint, found, entity, step, local, agreed, free)
+            self._endpoint(
+                m, read, write, address, own_address, slot, endpoint, found, entity, step, before, local, agreed, free
+            )  # fmt: skip
             # -- who is silent
             with m.State("SWEEP"):
                 m.d.comb += address.eq(peers.participant(slot, tables.LEASE))
@@ -173,9 +177,11 @@ class Discovery(wiring.Component):
                 with m.Elif(~self.alive.bit_select(slot, 1)):
                     m.d.sync += slot.eq(slot + 1)
                 with m.Else():
-                    m.next = "LEASE"
-            with m.State("LEASE"):
+                    m.next = "ADDRESSED"
+            with m.State("ADDRESSED"):
                 m.d.comb += address.eq(peers.participant(slot, tables.LEFT))
+                m.next = "LEASE"
+            with m.State("LEASE"):
                 m.next = "LEFT"
                 with m.If(heard.bit_select(slot, 1)):
                     m.d.sync += [heard.bit_select(slot, 1).eq(0), slot.eq(slot + 1)]
@@ -191,9 +197,9 @@ class Discovery(wiring.Component):
             with m.State("REMOVE"):  # the participant, and each of its endpoints
                 m.d.comb += address.eq(peers.endpoint(step, tables.INFO))
                 m.d.sync += [step.eq(step + 1), self.alive.bit_select(slot, 1).eq(0)]
-                with m.If((step != 0) & (self.peers.data[tables.INFO_SLOT : tables.INFO_SLOT + 8] == slot)):
+                with m.If((step >= READ_LATENCY) & (self.peers.data[tables.INFO_SLOT : tables.INFO_SLOT + 8] == slot)):
                     m.d.sync += self.matched.bit_select(before, 1).eq(0)
-                with m.If(step == peers.endpoints):
+                with m.If(step == peers.endpoints + READ_LATENCY - 1):
                     m.next = "PROCEED"
                     with m.If(sweeping):
                         m.d.sync += slot.eq(slot + 1)
@@ -221,19 +227,19 @@ class Discovery(wiring.Component):
                 m.next = "COPY"
                 with m.If(~meta.known):
                     m.d.sync += slot.eq(free(self.alive))
-        with m.State("COPY"):  # the scratch area, a word behind
+        with m.State("COPY"):  # the scratch area, behind what is read
             source = Signal(4)
             m.d.comb += source.eq(step)
             with m.If(~read.user & ((step == tables.USER_IP) | (step == tables.USER_PORT))):
                 m.d.comb += source.eq(step - tables.USER_IP + tables.META_IP)
             m.d.comb += address.eq(peers.scratch(source))
             m.d.sync += step.eq(step + 1)
-            with m.If(step != 0):
+            with m.If(step >= READ_LATENCY):
                 write(
                     peers.participant(slot, before),
                     Mux(before >= tables.LEASE, read.lease + 1, self.peers.data),
                 )
-            with m.If(step == tables.LEFT + 1):
+            with m.If(step == tables.LEFT + READ_LATENCY):
                 m.d.sync += [step.eq(0), self.alive.bit_select(slot, 1).eq(1), heard.bit_select(slot, 1).eq(1)]
                 m.next = "PROCEED"
                 with m.If(fresh):
@@ -264,6 +270,7 @@ class Discovery(wiring.Component):
         found: Value,
         entity: Value,
         step: Value,
+        before: Value,
         local: Value,
         agreed: Value,
         free: Any,
@@ -291,8 +298,6 @@ class Discovery(wiring.Component):
             m.d.comb += agree[n].eq(Mux(is_writer, fits[0], fits[1]) & ~read.refused)
         transient = Signal()  # it gets, or gives, what was there before it
         reliable = Signal()
-        before = Signal.like(step)
-        m.d.sync += before.eq(step)
         with m.State("ENDPOINT"):
             m.d.sync += step.eq(0)
             for n in reversed(range(len(same))):
@@ -331,7 +336,7 @@ class Discovery(wiring.Component):
                 m.next = "PROXY"
                 with m.If(~found):
                     m.d.sync += endpoint.eq(free(self.matched))
-        with m.State("PROXY"):  # a word behind what is read
+        with m.State("PROXY"):  # behind what is read
             last = self.own.data
             m.d.comb += own_address.eq(own.writer(local, tables.WRITER_LAST))
             where = Mux(step[0], tables.USER_PORT, tables.USER_IP)  # for IP, 2, and PORT, 3
@@ -348,15 +353,15 @@ class Discovery(wiring.Component):
                 Mux(is_writer, 0, last),  # LAST, ASK_TO
                 Mux(is_writer, 0, first),  # START
             ]
-            with m.If(step != 0):
+            with m.If(step >= READ_LATENCY):
                 with m.Switch(before[:3]):
                     for n, value in enumerate(words):
                         with m.Case(n):
                             write(peers.endpoint(endpoint, n), value)
             m.d.sync += step.eq(step + 1)
-            with m.If((step == tables.PORT + 1) & found):
+            with m.If((step == tables.PORT + READ_LATENCY) & found):
                 m.next = "PROCEED"  # it has only moved
-            with m.If(step == len(words)):
+            with m.If(step == len(words) - 1 + READ_LATENCY):
                 m.d.sync += self.matched.bit_select(endpoint, 1).eq(1)
                 m.d.comb += [self.due.eq(1), self.due_proxy.eq(Cat(endpoint, C(0, len(self.due_proxy) - 1 - len(endpoint)), C(1, 1)))]
                 m.next = "PROCEED"

@@ -20,7 +20,7 @@ class Outbox(wiring.Component):
     cycle, with or after its last word; then three cycles pass with `busy` high, in which no word may come. `room` is high while a
     datagram of `longest` octets can be written. `source_port`, ours. `lookup` asks for hardware addresses; `o`, the data.
 
-    A datagram begins to leave 6 cycles after `finish` if its hardware address is known and none is before it, then an octet
+    A datagram begins to leave 7 cycles after `finish` if its hardware address is known and none is before it, then an octet
     a cycle. Who does not answer to ARP within `patience` cycles gets nothing (`drop_unresolved`): who comes behind waits no
     longer than that.
     """
@@ -106,6 +106,8 @@ class Outbox(wiring.Component):
         waited = Signal(range(self._patience + 1))
         at = Signal(bits)
         left, lane = Signal(bits), Signal(2)
+        word = Signal(32)
+        after = Signal(bits)  # where the next datagram begins
         m.d.comb += [
             read.addr.eq(at),
             lookup.valid.eq(asking),
@@ -135,28 +137,31 @@ class Outbox(wiring.Component):
                 m.next = "NUMBERS"
             with m.State("NUMBERS"):
                 m.d.sync += [port.eq(read.data[:16]), left.eq(read.data[16:]), at.eq(at + 1)]
+                m.d.sync += after.eq(done + HEADER + read.data[16:])
                 m.d.sync += octets.eq(Cat(C(0, 2), read.data[16:30]))
                 m.next = "SUM"
             with m.State("SUM"):
-                m.d.sync += checksum.eq(read.data[:16])
+                m.d.sync += [checksum.eq(read.data[:16]), at.eq(at + 1)]
+                m.next = "FIRST"
+            with m.State("FIRST"):
+                m.d.sync += word.eq(read.data)
                 m.next = "SEND"
             with m.State("SEND"):
                 m.d.comb += [
                     o.valid.eq(~asking & found),
                     o.payload.end.eq(left == 0),
-                    o.payload.data.eq(read.data.word_select(lane, 8)),
+                    o.payload.data.eq(word.word_select(lane, 8)),
                 ]
                 with m.If(o.valid & o.ready):
                     m.d.sync += lane.eq(lane + 1)
                     with m.If(lane == 3):
-                        m.d.comb += read.addr.eq(at + 1)
-                        m.d.sync += [at.eq(at + 1), left.eq(left - 1)]
+                        m.d.sync += [word.eq(read.data), at.eq(at + 1), left.eq(left - 1)]
                     with m.If(o.payload.end):
-                        m.d.sync += done.eq(at)
+                        m.d.sync += done.eq(after)
                         m.next = "IDLE"
                 with m.If(~asking & ~found):
                     m.d.comb += self.drop_unresolved.eq(1)
-                    m.d.sync += done.eq(at + left)
+                    m.d.sync += done.eq(after)
                     m.next = "IDLE"
         return m
 

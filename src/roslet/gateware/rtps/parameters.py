@@ -14,7 +14,7 @@ from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.meta import ADDRESSES
 from roslet.gateware.rtps import ports, tables
-from roslet.gateware.rtps.ports import DISCOVERY, ReadSignature, WriteSignature, exchanged
+from roslet.gateware.rtps.ports import DISCOVERY, READ_LATENCY, ReadSignature, WriteSignature, exchanged
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 from roslet.gateware.words import MessageSignature
 from roslet.wire.rtps import locator, qos
@@ -142,7 +142,7 @@ class Parameters(wiring.Component):
 
         what = Signal(_What)
         left, at = Signal(14), Signal(10)  # words of a value: still to come, before
-        step = Signal(range(self.locals + 2))  # within a word
+        step = Signal(range(self.locals + READ_LATENCY + 1))  # within a word
         text_left = Signal(16)
         masked = Signal(32)
         # Of a locator whose words are passing
@@ -242,7 +242,7 @@ class Parameters(wiring.Component):
         with m.Switch(what):
             with m.Case(_What.GUID):
                 m.d.comb += self.peers.addr.eq(self._peers.scratch((tables.SCRATCH_SOURCE + at)[:4]))
-                m.d.comb += last.eq(step == 1)
+                m.d.comb += last.eq(step == READ_LATENCY)
                 with m.If(at < tables.META_IP):
                     keep(self._peers.scratch(at), word)
                     with m.If(last & (self.peers.data != word)):
@@ -340,11 +340,12 @@ class Parameters(wiring.Component):
         reader = self.i.meta.kind == ports.PUBLICATIONS
         m.d.comb += [
             self.own.addr.eq(self._own.text(reader, Const(is_type, 1), step, at)),
-            last.eq(step == self.locals),
+            last.eq(step == self.locals + READ_LATENCY - 1),
         ]
-        shown = Signal(range(self.locals))
-        m.d.sync += shown.eq(step)
-        with m.If((step != 0) & (first | (text_left != 0))):
+        # Whose word the memory gives next, and now
+        addressed, shown = Signal(range(self.locals)), Signal(range(self.locals))
+        m.d.sync += [addressed.eq(step), shown.eq(addressed)]
+        with m.If((step >= READ_LATENCY) & (first | (text_left != 0))):
             for n in range(self.locals):
                 with m.If((shown == n) & (self.own.data != masked)):
                     m.d.sync += self.same[n].eq(0)

@@ -22,7 +22,7 @@ class DatagramQueue(wiring.Component):
     `o` gives is in the queue, or at `o`, and `good` is then whether it is a good one. So who reads `o` may act on what it has
     read before it has read all of it.
 
-    Throughput one octet a cycle; a word leaves 3 cycles after its last octet came. After the end of a datagram `i` waits until
+    Throughput one octet a cycle; a word leaves 4 cycles after its last octet came. After the end of a datagram `i` waits until
     that has been taken from `o`: what comes meanwhile must be held elsewhere. A datagram that is too long gets a bad end
     in place of what does not fit, and is counted by `drop_long` if its own end is good.
     """
@@ -53,11 +53,11 @@ class DatagramQueue(wiring.Component):
         whole = Signal()
         m.d.comb += [
             words.w_data.eq(item),
-            o.payload.eq(words.r_data),
-            o.valid.eq(words.r_rdy),
-            words.r_en.eq(o.ready),
+            words.r_en.eq(~o.valid | o.ready),
             whole.eq(at == 3),
         ]
+        with m.If(words.r_en):  # block RAM is slow
+            m.d.sync += [o.payload.eq(words.r_data), o.valid.eq(words.r_rdy)]
         last = Signal(2)  # octets of the last word, 0 where that is whole
         with m.If(self.known):
             with m.If(o.valid & o.ready & o.payload.end):

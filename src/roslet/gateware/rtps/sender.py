@@ -11,7 +11,7 @@ from amaranth.lib.wiring import In, Out
 from roslet.gateware.octets import pick
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.composer import SUBJECT
-from roslet.gateware.rtps.ports import ReadSignature, WriteSignature
+from roslet.gateware.rtps.ports import READ_LATENCY, ReadSignature, WriteSignature
 from roslet.gateware.rtps.rom import Register, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 from roslet.gateware.rtps.turns import JOB, first
@@ -200,7 +200,7 @@ class Sender(wiring.Component):
             ]
             with m.If(self.valid & ~(pending.any() & ~self._yield)):
                 m.d.comb += self.taken.eq(1)
-                m.next = "WHO"
+                m.next = "LOOK"
                 with m.If(job.announce):
                     m.next = "ANNOUNCE"
                 with m.If(job.greet):
@@ -223,8 +223,10 @@ class Sender(wiring.Component):
             m.d.sync += [self.ip.eq(GROUP), self.port.eq(self.group_port)]
             m.next = "ANNOUNCEMENT"
         with m.State("GREET"):
-            m.d.sync += self.ip.eq(self.peers.data)
             m.d.comb += self.peers.addr.eq(self._peers.participant(self.subject.slot, tables.META_PORT))
+            m.next = "GREET IP"
+        with m.State("GREET IP"):
+            m.d.sync += self.ip.eq(self.peers.data)
             m.next = "GREET PORT"
         with m.State("GREET PORT"):
             m.d.sync += self.port.eq(self.peers.data)
@@ -237,6 +239,8 @@ class Sender(wiring.Component):
 
     def _who(self, m: Module) -> None:
         peers, subject = self._peers, self.subject
+        with m.State("LOOK"):
+            m.next = "WHO"
         with m.State("WHO"):
             info = self.peers.data
             m.d.comb += self.peers.addr.eq(
@@ -256,7 +260,6 @@ class Sender(wiring.Component):
                 ]
             m.next = "WHERE"
         with m.State("WHERE"):
-            m.d.sync += self.ip.eq(self.peers.data)
             m.d.comb += self.peers.addr.eq(
                 Mux(
                     subject.builtin,
@@ -274,17 +277,20 @@ class Sender(wiring.Component):
         """A peer's writer: what it says its last is, and what we want."""
         own = self._own
         with m.State("WRITER"):
-            m.d.sync += self.port.eq(self.peers.data)
+            m.d.sync += self.ip.eq(self.peers.data)
             m.d.comb += self.peers.addr.eq(self._proxy(tables.LAST))
+            m.next = "WRITER PORT"
+        with m.State("WRITER PORT"):
+            m.d.sync += self.port.eq(self.peers.data)
+            m.d.comb += self.peers.addr.eq(self._proxy(tables.NEXT_LO))
             m.next = "WANTED"
         with m.State("WANTED"):
             m.d.sync += self._last.eq(self.peers.data)
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.NEXT_LO))
+            m.d.comb += self.own.addr.eq(own.own(tables.ACKNACK_COUNT))
             m.next = "MISSING"
         with m.State("MISSING"):
             age = self._age_of(self.peers.data)
             m.d.sync += [self._bitmap[-1 - n].eq(age >= n) for n in range(self._window)]
-            m.d.comb += self.own.addr.eq(own.own(tables.ACKNACK_COUNT))
             m.next = "ACKNACK"
             with m.If(self.peers.data == 0):
                 m.next = "IDLE"  # nothing has been heard of it
@@ -300,11 +306,16 @@ class Sender(wiring.Component):
         start, unacknowledged = Signal(AGE), Signal()
         kinds = len(own.writers) - 1, len(own.readers) - 1  # ages of the oldest that discovery has to say
         with m.State("READER"):
-            m.d.sync += self.port.eq(self.peers.data)
+            m.d.sync += self.ip.eq(self.peers.data)
             first_word = Mux(subject.kind[0], own.own(tables.SUBSCRIPTIONS), own.own(tables.PUBLICATIONS))
             m.d.comb += self.own.addr.eq(
                 Mux(subject.builtin, first_word, self._writer_word(tables.WRITER_LAST))
             )
+            m.next = "READER PORT"
+        with m.State("READER PORT"):
+            m.d.sync += self.port.eq(self.peers.data)
+            m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST_HI))
+            m.d.comb += self.peers.addr.eq(self._proxy(tables.START))
             m.next = "LAST"
         with m.State("LAST"):
             most = Mux(subject.kind[0], C(kinds[1], AGE), C(kinds[0], AGE))
@@ -312,28 +323,26 @@ class Sender(wiring.Component):
                 self._oldest.eq(most),
                 self._last.eq(self.own.data + Mux(subject.builtin, most, 0)),
             ]
-            m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST_HI))
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.START))
+            m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_COUNT))
+            m.d.comb += self.peers.addr.eq(self._proxy(tables.ACKED))
             m.next = "START"
         with m.State("START"):
             age = self._age_of(self.peers.data)
             m.d.sync += [start.eq(Mux(subject.builtin, MAX_AGE, age)), self._last_high.eq(self.own.data)]
             with m.If(subject.builtin):
                 m.d.sync += self._last_high.eq(0)
-            m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_COUNT))
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.ACKED))
+            m.d.comb += self.peers.addr.eq(self._proxy(tables.ASK_FROM))
             m.next = "ACKED"
         with m.State("ACKED"):
             m.d.sync += [unacknowledged.eq(self._age_of(self.peers.data) >= 0), self._kept.eq(self.own.data)]
             with m.If(~subject.builtin):
                 m.d.sync += self._oldest.eq((self.own.data - 1)[:16].as_signed())
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.ASK_FROM))
+            m.d.comb += self.peers.addr.eq(self._proxy(tables.ASK_TO))
             m.next = "ASK FROM"
         with m.State("ASK FROM"):
             m.d.sync += self._age.eq(self._age_of(self.peers.data))
             with m.If(start < self._oldest):
                 m.d.sync += self._oldest.eq(start)
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.ASK_TO))
             m.next = "ASK TO"
         with m.State("ASK TO"):
             age = self._age_of(self.peers.data)
@@ -356,7 +365,7 @@ class Sender(wiring.Component):
             number = (self._last - self._age)[:16]
             m.d.comb += self.own.addr.eq(self._sample(number))
             m.d.sync += subject.sample.eq(self._sample(number))
-            m.next = "SAMPLE"
+            m.next = "KEPT SAMPLE"
             with m.If(subject.builtin):
                 m.d.sync += self._local.eq(self._oldest - self._age)
                 m.next = "DISCOVERY"
@@ -368,6 +377,8 @@ class Sender(wiring.Component):
                 for name, table in (("publication", own.writers), ("subscription", own.readers))
             ]
             self._compose(m, Mux(subject.kind[0], starts[1], starts[0]), "NEXT")
+        with m.State("KEPT SAMPLE"):
+            m.next = "SAMPLE"
         with m.State("SAMPLE"):
             m.d.sync += [subject.words.eq(self.own.data[:16]), self._padding.eq(self.own.data[16:18])]
             self._compose(m, self._rom.start["message"], "NEXT")
@@ -376,6 +387,8 @@ class Sender(wiring.Component):
             m.next = "AGAIN"
         with m.State("HEARTBEAT"):
             m.d.comb += self.own.addr.eq(own.own(tables.HEARTBEAT_COUNT))
+            m.next = "HEARTBEATS"
+        with m.State("HEARTBEATS"):
             m.next = "COUNT"
         with m.State("COUNT"):
             m.d.sync += self._count.eq(self._increased)
@@ -398,18 +411,23 @@ class Sender(wiring.Component):
             valid.eq(Array(one.valid for one in streams)[self._local]),
         ]
         words, long = Signal(16), Signal()
+        step = Signal(range(peers.endpoints + READ_LATENCY + 1))
+        addressed, shown = Signal(range(peers.endpoints)), Signal(range(peers.endpoints))
+        reads = Signal(range(READ_LATENCY + 1))  # under way
         with m.State("PUBLISH"):
             m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST))
             m.d.sync += [words.eq(0), long.eq(0), self._age.eq(0), endpoint.eq(0)]
+            m.next = "NUMBERED"
+        with m.State("NUMBERED"):
+            m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST_HI))
             m.next = "NUMBER"
         with m.State("NUMBER"):
             m.d.sync += self._last.eq(self._increased)
-            m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST_HI))
+            m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_COUNT))
             m.next = "NUMBER HIGH"
         with m.State("NUMBER HIGH"):
             m.d.sync += self._last_high.eq(Mux(self._last == 0, self._increased, self.own.data))
             m.d.sync += subject.sample.eq(self._sample(self._last))
-            m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_COUNT))
             m.next = "KEPT"
         with m.State("KEPT"):
             full = self.own.data[:16] == self._choose([C(one.depth, 16) for one in own.writers])
@@ -445,28 +463,39 @@ class Sender(wiring.Component):
             m.next = "STORE KEPT"
         with m.State("STORE KEPT"):
             self._write(m, self._writer_word(tables.WRITER_COUNT), self._kept)
-            m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.INFO))
+            m.d.sync += [step.eq(0), reads.eq(0)]
             m.next = "EACH READER"
-        with m.State("EACH READER"):
+        with m.State("EACH READER"):  # an endpoint a cycle
             info = self.peers.data
+            ours = self.matched.bit_select(shown, 1) & ~info[tables.INFO_WRITER]
+            ours &= info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8] == self._local
+            m.d.comb += self.peers.addr.eq(peers.endpoint(step, tables.INFO))
             m.d.sync += [
+                step.eq(step + 1),
+                addressed.eq(step),
+                shown.eq(addressed),
+                endpoint.eq(shown),
                 subject.slot.eq(info[tables.INFO_SLOT : tables.INFO_SLOT + 8]),
                 self._reliable.eq(info[tables.INFO_RELIABLE]),
                 self._oldest.eq((self._kept - 1)[:16].as_signed()),
             ]
-            ours = self.matched.bit_select(endpoint[: peers.endpoint_bits], 1) & ~info[tables.INFO_WRITER]
-            ours &= info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8] == self._local
-            m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.IP))
+            with m.If(reads != READ_LATENCY):
+                m.d.sync += reads.eq(reads + 1)
+            with m.Elif(ours):
+                m.d.comb += self.peers.addr.eq(peers.endpoint(shown, tables.IP))
+                m.next = "READER IP"
+            with m.Elif(shown == peers.endpoints - 1):
+                m.d.sync += self._yield.eq(1)
+                m.next = "IDLE"
+        with m.State("READER IP"):
+            m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.PORT))
             m.next = "READER WHERE"
-            with m.If(~ours):
-                self._next_reader(m)
         with m.State("READER WHERE"):
             m.d.sync += self.ip.eq(self.peers.data)
-            m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.PORT))
-            m.next = "READER PORT"
-        with m.State("READER PORT"):
-            m.d.sync += self.port.eq(self.peers.data)
             m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.START))
+            m.next = "READER'S PORT"
+        with m.State("READER'S PORT"):
+            m.d.sync += self.port.eq(self.peers.data)
             m.next = "READER START"
         with m.State("READER START"):
             age = self._age_of(self.peers.data)
@@ -477,13 +506,8 @@ class Sender(wiring.Component):
             with m.Else():
                 self._compose(m, self._rom.start["message"], "NEXT READER")
         with m.State("NEXT READER"):
-            self._next_reader(m)
-
-    def _next_reader(self, m: Module) -> None:
-        endpoint = self.subject.endpoint
-        m.d.comb += self.peers.addr.eq(self._peers.endpoint(endpoint + 1, tables.INFO))
-        m.d.sync += endpoint.eq(endpoint + 1)
-        m.next = "EACH READER"
-        with m.If(endpoint == self._peers.endpoints - 1):
-            m.d.sync += self._yield.eq(1)
-            m.next = "IDLE"
+            m.d.sync += [step.eq(endpoint + 1), reads.eq(0)]
+            m.next = "EACH READER"
+            with m.If(endpoint == peers.endpoints - 1):
+                m.d.sync += self._yield.eq(1)
+                m.next = "IDLE"

@@ -225,10 +225,12 @@ class Submessages(wiring.Component):
                 take("SN HIGH")
             with m.State("LOAD"):
                 m.d.comb += self.peers.addr.eq(at(tables.NEXT_HI))
+                m.next = "LOAD LOW"
+            with m.State("LOAD LOW"):
+                m.d.comb += self.peers.addr.eq(at(tables.LAST))
                 m.d.sync += wanted.eq(self.peers.data)
                 m.next = "LOAD HIGH"
             with m.State("LOAD HIGH"):
-                m.d.comb += self.peers.addr.eq(at(tables.LAST))
                 m.d.sync += wanted_high.eq(self.peers.data)
                 m.next = "LOAD LAST"
             with m.State("LOAD LAST"):

@@ -6,7 +6,7 @@ from amaranth.hdl import Cat, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from roslet.gateware.rtps.ports import SUBMESSAGE, ReadSignature, WriteSignature
+from roslet.gateware.rtps.ports import READ_LATENCY, SUBMESSAGE, ReadSignature, WriteSignature
 from roslet.gateware.rtps.tables import OWN_PREFIX, PREFIX, SCRATCH_SOURCE, OwnMap, PeerMap
 from roslet.gateware.words import MessageSignature
 from roslet.wire.rtps import header, submessage
@@ -35,7 +35,7 @@ class Walker(wiring.Component):
     once it is known that the whole datagram is good: who has acted upon it need take nothing back. Where the datagram is bad,
     or ends within a submessage, so does the body.
 
-    Throughput one word a cycle; a sender's prefix, and every INFO_SRC, takes 3 * (participants + 2) cycles.
+    Throughput one word a cycle; a sender's prefix, and every INFO_SRC, takes 3 * (participants + 3) cycles.
 
     Of good datagrams `drop_not_rtps`, `drop_version` (not 2.x), `drop_truncated` (ends within the header, or within a
     submessage by its length) drop what follows, as 8.3.4.1 has it; `drop_fragment` counts submessages that carry fragments.
@@ -217,8 +217,8 @@ class Walker(wiring.Component):
         """Compare each word of a prefix, as it stands there, with that of each participant."""
         many = self._peers.participants
         i = self.i.stream
-        step = Signal(range(many + 2))
-        shown = Signal.like(slot)  # whose word the memory gives
+        step = Signal(range(many + READ_LATENCY + 1))
+        addressed, shown = Signal.like(slot), Signal.like(slot)  # whose word the memory gives next, and now
         match = Signal(many)
         with m.State("PREFIX"):
             with m.If(i.valid & i.payload.end):
@@ -226,7 +226,7 @@ class Walker(wiring.Component):
                 m.next = "SHORT"
             with m.Elif(came):
                 m.d.comb += self.peers.addr.eq(self._peers.participant(step, Cat(at, PREFIX)))
-                m.d.sync += [step.eq(step + 1), shown.eq(step)]
+                m.d.sync += [step.eq(step + 1), addressed.eq(step), shown.eq(addressed)]
                 with m.If(step == 0):
                     m.d.comb += [
                         self.source.en.eq(1),
@@ -235,11 +235,11 @@ class Walker(wiring.Component):
                     ]
                     with m.If(at == 0):
                         m.d.sync += match.eq(self.alive)
-                with m.Else():
+                with m.If(step >= READ_LATENCY):
                     for n in range(many):
                         with m.If(shown == n):
                             m.d.sync += match[n].eq(match[n] & (self.peers.data == word))
-                with m.If(step == many + 1):
+                with m.If(step == many + READ_LATENCY):
                     m.d.comb += i.ready.eq(1)
                     m.d.sync += [step.eq(0), at.eq(at + 1)]
                     with m.If(at == _PREFIX_WORDS - 1):
@@ -249,20 +249,20 @@ class Walker(wiring.Component):
     def _compare_own(self, m: Module, came: Value, at: Value, left: Value, for_us: Value) -> None:
         """INFO_DST: our prefix, or none (GUIDPREFIX_UNKNOWN), which is everybody."""
         ours, nobodys = Signal(init=1), Signal(init=1)
-        read = Signal()
+        waited = Signal(range(READ_LATENCY + 1))
         word = self.i.stream.payload.data
         m.d.comb += self.own.addr.eq(self._own.own(OWN_PREFIX) + at)
-        with m.If(came & ~read):
-            m.d.sync += read.eq(1)
+        with m.If(came & (waited != READ_LATENCY)):
+            m.d.sync += waited.eq(waited + 1)
         with m.Elif(came):
             m.d.comb += self.i.stream.ready.eq(1)
             same, zero = ours & (word == self.own.data), nobodys & (word == 0)
-            m.d.sync += [ours.eq(same), nobodys.eq(zero), read.eq(0), left.eq(left - 1), at.eq(at + 1)]
+            m.d.sync += [ours.eq(same), nobodys.eq(zero), waited.eq(0), left.eq(left - 1), at.eq(at + 1)]
             with m.If(at == _PREFIX_WORDS - 1):
                 m.d.sync += [for_us.eq(same | zero), ours.eq(1), nobodys.eq(1)]
                 m.next = "SKIP"
         with m.If(self.i.stream.valid & self.i.stream.payload.end):
-            m.d.sync += [ours.eq(1), nobodys.eq(1), read.eq(0)]
+            m.d.sync += [ours.eq(1), nobodys.eq(1), waited.eq(0)]
 
 
 def _number(one: Value) -> Value:
