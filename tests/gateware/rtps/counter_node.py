@@ -95,9 +95,7 @@ def compiled(clk_hz: float, rate: float, reliable: bool) -> tuple[pathlib.Path, 
 class Running:
     """The node on a wire, in whose seconds it counts."""
 
-    def __init__(
-        self, rate: float = 10.0, reliable: bool = False, wire: Wire | None = None, link: Any = None
-    ) -> None:
+    def __init__(self, rate: float = 10.0, reliable: bool = False, wire: Wire | None = None, link: Any = None) -> None:
         library, self.reasons = compiled(CLOCK / FACTOR, rate, reliable)
         self.model = Model(library)
         for name, hertz in (("clk", CLOCK), ("phy_rx_clk", PHY_CLOCK), ("phy_tx_clk", PHY_CLOCK)):
