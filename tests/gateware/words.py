@@ -130,7 +130,14 @@ class Tables(Elaboratable):
     attributes."""
 
     def __init__(
-        self, peers: PeerMap, own: OwnMap, init: Sequence[int], /, *, theirs: Sequence[int] = (), **blocks: Any
+        self,
+        peers: PeerMap,
+        own: OwnMap,
+        init: Sequence[int],
+        /,
+        *,
+        theirs: Sequence[int] = (),
+        **blocks: Any,
     ) -> None:
         self._blocks = blocks
         self.__dict__.update(blocks)

@@ -63,14 +63,21 @@ def test_our_own_words_have_places_of_their_own() -> None:
     texts = [(reader, is_type, n) for reader in (False, True) for is_type in (False, True) for n in range(2)]
     words = [(*text, word) for text in texts for word in range(1 << own.text_bits)]
     got = evaluate(
-        [own.text(Const(r, 1), Const(t, 1), Const(n, n), Const(word, word.bit_length())) for r, t, n, word in words]
+        [
+            own.text(Const(r, 1), Const(t, 1), Const(n, n), Const(word, word.bit_length()))
+            for r, t, n, word in words
+        ]
     )
     assert got == [own.text_address(r, t, n) + word for r, t, n, word in words]
     places = [
         *got,
         *(own.own(word) for word in range(16)),
         *evaluate([own.writer(Const(n, n), word) for n in range(2) for word in range(4)]),
-        *(at for n, one in enumerate(writers) for at in range(own.samples[n], own.samples[n] + own.stride(one) * one.depth)),
+        *(
+            at
+            for n, one in enumerate(writers)
+            for at in range(own.samples[n], own.samples[n] + own.stride(one) * one.depth)
+        ),
     ]
     assert len(set(places)) == len(places)
     assert max(places) < own.depth

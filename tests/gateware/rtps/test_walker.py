@@ -93,7 +93,9 @@ def bench(stalls: int = 0, seed: int = 0) -> WordBench:
     return WordBench(Tables(peers, own, init, theirs=theirs, walker=Walker(peers, own)), stalls, seed)
 
 
-def run(datagrams: list[bytes], stalls: int = 0, cycles: int = 20_000) -> tuple[list[Body], dict[str, int], list[int]]:
+def run(
+    datagrams: list[bytes], stalls: int = 0, cycles: int = 20_000
+) -> tuple[list[Body], dict[str, int], list[int]]:
     """What the walker makes of them: bodies, counts, and the slots that were heard."""
     one = bench(stalls, len(datagrams))
     walker = one.dut.walker
@@ -112,10 +114,19 @@ def run(datagrams: list[bytes], stalls: int = 0, cycles: int = 20_000) -> tuple[
     one.count(*(f"walker.{name}" for name in REASONS))
     one.run(cycles=cycles, rest=100)
     counts = {name.removeprefix("walker."): count for name, count in one.counts.items()}
-    return [
-        Body(meta.id, meta.flags, meta.slot if meta.known else None, None if isinstance(octets, Bad) else octets)
-        for octets, meta in got
-    ], counts, heard
+    return (
+        [
+            Body(
+                meta.id,
+                meta.flags,
+                meta.slot if meta.known else None,
+                None if isinstance(octets, Bad) else octets,
+            )
+            for octets, meta in got
+        ],
+        counts,
+        heard,
+    )
 
 
 def check(datagrams: list[bytes], stalls: int = 0) -> dict[str, int]:
@@ -173,7 +184,9 @@ def test_a_length_of_zero_goes_to_the_end_of_the_message_but_for_pad_and_info_ts
 
 
 def test_unknown_submessages_are_skipped_by_their_length() -> None:
-    kinds = [kind for kind in range(0, 256, 5) if kind not in (6, 7, 8, 9, 1, 0xC, 0xE, 0x12, 0x13, 0x15, 0x16)]
+    kinds = [
+        kind for kind in range(0, 256, 5) if kind not in (6, 7, 8, 9, 1, 0xC, 0xE, 0x12, 0x13, 0x15, 0x16)
+    ]
     check([hand.message(hand.submessage(kind, 0, bytes(4 * (kind % 4) + 4)), BEAT) for kind in kinds])
 
 
@@ -188,11 +201,19 @@ def test_info_dst_to_us_or_to_everybody_lets_pass_and_to_others_does_not() -> No
     check([hand.message(hand.info_dst(OTHER), BEAT, hand.info_dst(OURS), data(), hand.info_dst(OTHER), BEAT)])
     check([hand.message(hand.info_dst(OTHER), BEAT), hand.message(data())])
     # More than its prefix, in a later version; and less, which says nothing.
-    check([hand.message(hand.submessage(0x0E, 0, OTHER + bytes(4)), BEAT, hand.submessage(0x0E, 0, OURS[:8]), BEAT)])
+    check(
+        [
+            hand.message(
+                hand.submessage(0x0E, 0, OTHER + bytes(4)), BEAT, hand.submessage(0x0E, 0, OURS[:8]), BEAT
+            )
+        ]
+    )
 
 
 def test_info_src_says_who_speaks_from_there_on() -> None:
-    got, _, heard = run([hand.message(BEAT, hand.info_src(KNOWN[1]), BEAT, hand.info_src(OTHER), BEAT), hand.message(BEAT)])
+    got, _, heard = run(
+        [hand.message(BEAT, hand.info_src(KNOWN[1]), BEAT, hand.info_src(OTHER), BEAT), hand.message(BEAT)]
+    )
     assert [body.slot for body in got] == [0, 1, None, 0]
     assert heard == [0, 1, 0]
     check([hand.message(hand.submessage(0x0C, 0, bytes(8) + KNOWN[1] + bytes(8)), BEAT)])
@@ -232,7 +253,11 @@ def test_the_senders_prefix_is_written_into_the_scratch_area() -> None:
 
 def test_a_message_cut_at_every_octet_gives_what_is_before_the_cut_and_is_counted() -> None:
     message = hand.message(
-        hand.info_dst(OURS), BEAT, hand.info_ts(1), hand.info_src(KNOWN[1]), hand.acknack(hand.READER, hand.WRITER, b"", 1, ">")
+        hand.info_dst(OURS),
+        BEAT,
+        hand.info_ts(1),
+        hand.info_src(KNOWN[1]),
+        hand.acknack(hand.READER, hand.WRITER, b"", 1, ">"),
     )
     counts = check([message[:cut] for cut in range(len(message) + 1)], 20)
     assert counts["drop_truncated"] > 80
@@ -259,14 +284,20 @@ def test_a_length_beyond_the_message_ends_it(kind: int) -> None:
 
 def test_fragments_are_counted_if_they_are_for_us() -> None:
     frag = hand.data_frag(hand.WRITER, 1, 1, 1, 8, 16, bytes(8))
-    message = hand.message(frag, hand.info_dst(OTHER), frag, hand.info_dst(OURS), hand.submessage(0x13, 0, bytes(28)), BEAT)
+    message = hand.message(
+        frag, hand.info_dst(OTHER), frag, hand.info_dst(OURS), hand.submessage(0x13, 0, bytes(28)), BEAT
+    )
     counts = check([message])
     assert counts["drop_fragment"] == 2
 
 
 def test_what_is_not_rtps_or_of_another_version_is_dropped_and_counted() -> None:
     wrong = [b"RTPX" + hand.message(BEAT)[4:], b"\0" * 60, b"R", b"RTP", b"RTPS\1\0" + hand.message(BEAT)[6:]]
-    wrong += [b"RTPS\3\0" + hand.message(BEAT)[6:], b"RTPS\2\xff" + hand.message(BEAT)[6:], hand.message(BEAT)]
+    wrong += [
+        b"RTPS\3\0" + hand.message(BEAT)[6:],
+        b"RTPS\2\xff" + hand.message(BEAT)[6:],
+        hand.message(BEAT),
+    ]
     counts = check(wrong, 30)
     assert (counts["drop_not_rtps"], counts["drop_version"]) == (4, 2)
     assert not any(check([Bad(one) for one in wrong]).values())
@@ -301,7 +332,9 @@ def test_random_messages_are_walked_as_by_hand(seed: int) -> None:
             e = random_.choice("<>")
             kind = random_.choice([6, 7, 8, 9, 0x15, 0x15, 1, 0xC, 0xE, 0x16, 0x80, random_.randrange(256)])
             size = 4 * random_.randrange(10)
-            body = random_.choice([OURS, OTHER, bytes(8) + KNOWN[1], bytes(12), b""]) + random_.randbytes(size)
+            body = random_.choice([OURS, OTHER, bytes(8) + KNOWN[1], bytes(12), b""]) + random_.randbytes(
+                size
+            )
             length = random_.choice([None] * 8 + [0, 4 * random_.randrange(12), random_.randrange(65536)])
             parts.append(hand.submessage(kind, random_.randrange(128) * 2, body, e, length))
         datagram = hand.message(*parts, prefix=random_.choice([*KNOWN, OTHER]))

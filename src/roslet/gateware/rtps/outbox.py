@@ -97,6 +97,7 @@ class Outbox(wiring.Component):
                     write.data.eq(Cat(total[8:], total[:8])),
                 ]
                 m.d.sync += [begin.eq(begin + HEADER + length), length.eq(0), total.eq(0), carries.eq(0)]
+                m.d.sync += self.room.eq(0)  # it does not know of this datagram yet
                 m.next = "IDLE"
 
         # -- out
