@@ -14,6 +14,7 @@ from amaranth.lib.wiring import In, Out
 from roslet.cli.gateware_sim import dropped
 from roslet.gateware.rtps.tables import Local
 from roslet.gateware.tops.ros_core import Identity, RosCore
+from roslet.idl import Registry, type_hash
 from roslet.sim.compile import build
 from roslet.sim.mii import Mii
 from roslet.sim.model import Model
@@ -21,6 +22,7 @@ from roslet.sim.wire import Wire
 
 ADDRESS = "192.168.1.100"
 TYPE = "std_msgs::msg::dds_::UInt32_"
+HASH = type_hash(Registry("ros2", None), "std_msgs/msg/UInt32")
 CLOCK, PHY_CLOCK, FACTOR = 50e6, 25e6, 250.0
 
 
@@ -31,8 +33,8 @@ class CounterNode(wiring.Component):
         self._period = round(clk_hz / rate)
         self._core = RosCore(
             Identity("counter", address=f"{ADDRESS}/24"),
-            [Local("rt/count", TYPE, reliable=reliable, words=1, depth=depth)],
-            [Local("rt/shown", TYPE, reliable=reliable)],
+            [Local("rt/count", TYPE, reliable=reliable, words=1, depth=depth, type_hash=HASH)],
+            [Local("rt/shown", TYPE, reliable=reliable, type_hash=HASH)],
             clk_hz,
             counters=True,
         )

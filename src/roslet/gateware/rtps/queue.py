@@ -51,13 +51,21 @@ class DatagramQueue(wiring.Component):
         item = Signal(WORD)
         room = words.w_level < self._depth - SPARE
         whole = Signal()
+        spare, spared = Signal(WORD.size), Signal()  # a word for which `o` was not ready
         m.d.comb += [
             words.w_data.eq(item),
-            words.r_en.eq(~o.valid | o.ready),
+            words.r_en.eq(~spared),
             whole.eq(at == 3),
         ]
-        with m.If(words.r_en):  # block RAM is slow
-            m.d.sync += [o.payload.eq(words.r_data), o.valid.eq(words.r_rdy)]
+        # Block RAM is slow, and who reads decides late whether it does.
+        with m.If(~o.valid | o.ready):
+            m.d.sync += [
+                o.payload.eq(Mux(spared, spare, words.r_data)),
+                o.valid.eq(spared | words.r_rdy),
+                spared.eq(0),
+            ]
+        with m.Elif(words.r_rdy & ~spared):
+            m.d.sync += [spare.eq(words.r_data), spared.eq(1)]
         last = Signal(2)  # octets of the last word, 0 where that is whole
         with m.If(self.known):
             with m.If(o.valid & o.ready & o.payload.end):

@@ -102,15 +102,15 @@ class Submessages(wiring.Component):
         sn, wanted = Signal(64), Signal(32)
         wanted_high = Signal(32)
         ahead = Signal(32)
-        same, behind = Signal(), Signal()  # the number as the one that is wanted, or before it
+        # The number is the one that is wanted, or before it; a cycle after either has changed
+        same, behind = Signal(), Signal()
+        m.d.sync += [same.eq(ahead == 0), behind.eq(ahead[31])]
         known = Signal()  # what is wanted
         legal = Signal()  # as a number
         after, after_high = Signal(32), Signal(32)  # the number behind `sn`
         m.d.comb += Cat(after, after_high).eq(sn + 1)
         m.d.comb += [
             ahead.eq(sn[:32] - wanted),
-            same.eq(ahead == 0),
-            behind.eq(ahead[31]),
             known.eq(wanted != 0),
             legal.eq(~sn[63] & (sn != 0)),
         ]
@@ -247,7 +247,7 @@ class Submessages(wiring.Component):
                     with m.Case(submessage.ACKNACK):
                         take("ACKNACK BITS")
                     with m.Default():
-                        take("LAST HIGH")
+                        take("FIRST")
             # -- DATA
             with m.State("EXTRA"):
                 with m.If(skip != 0):
@@ -350,6 +350,8 @@ class Submessages(wiring.Component):
                     m.d.comb += self.drop_invalid.eq(~i.payload.bad)
                     m.next = "IDLE"
             # -- HEARTBEAT and GAP: two numbers
+            with m.State("FIRST"):
+                m.next = "LAST HIGH"
             with m.State("LAST HIGH"):
                 # What is kept aside is the lower first; a GAP's list has its base here.
                 with m.If(~legal):
@@ -366,7 +368,7 @@ class Submessages(wiring.Component):
                 m.d.sync += [sn[:32].eq(number), last_lo.eq(0)]
                 take("COUNT")
                 with m.If(came & (meta.id == submessage.GAP)):
-                    m.next = "GAP BITS"
+                    m.next = "GAP BASE"
             with m.State("COUNT"):
                 m.d.sync += last_lo.eq(sn[:32])
                 with m.If(~known):
@@ -386,12 +388,14 @@ class Submessages(wiring.Component):
                 with m.Elif(ended):
                     m.next = "INVALID"
             # -- sets of numbers, from `sn` on
+            with m.State("GAP BASE"):
+                m.next = "GAP BITS"
             with m.State("GAP BITS"):
                 with m.If(skip[0] & known & ~behind):
                     m.d.sync += [wanted.eq(sn), wanted_high.eq(sn[32:])]
-                self._bits(m, number, came, ended, skip, "GAP SET")
+                self._bits(m, number, came, ended, skip, "GAP NEXT")
             with m.State("GAP SET"):
-                # The run of ones at the beginning of the first word, a bit each cycle; those behind it are asked for again.
+                # The run of ones at the beginning of the first word, a bit in two cycles; those behind it are asked for again.
                 one = number.bit_select(~last_lo[:5], 1)
                 with m.If(came & (skip != 0) & ~last_lo[5] & one & same):
                     m.d.sync += [
@@ -399,6 +403,7 @@ class Submessages(wiring.Component):
                         last_lo.eq(last_lo + 1),
                         skip.eq(skip - 1),
                     ]
+                    m.next = "GAP NEXT"
                 with m.Else():
                     m.d.comb += i.ready.eq(came)
                     with m.If(came):
@@ -410,6 +415,8 @@ class Submessages(wiring.Component):
                         m.next = "WRITE LOW"
                     with m.Elif(ended):
                         m.next = "INVALID"
+            with m.State("GAP NEXT"):
+                m.next = "GAP SET"
             with m.State("ACKNACK BITS"):
                 self._bits(m, number, came, ended, skip, "ACKNACK SET")
             with m.State("ACKNACK SET"):

@@ -1,0 +1,37 @@
+"""An ordinary rclpy node: peer_rclpy.py NAME SECONDS. Subscribes to `count`, publishes `shown`, and prints what it sees."""
+
+import json
+import signal
+import sys
+import time
+
+import rclpy
+from std_msgs.msg import UInt32
+
+name, seconds = sys.argv[1], float(sys.argv[2])
+rclpy.init()
+node = rclpy.create_node(name)
+got = []
+node.create_subscription(UInt32, "count", lambda message: got.append(message.data), 10)
+publisher = node.create_publisher(UInt32, "shown", 10)
+ends = time.monotonic() + seconds
+stopped = []
+signal.signal(signal.SIGINT, lambda *_: stopped.append(True))
+number, due = 0, 0.0
+while time.monotonic() < ends and not stopped:
+    rclpy.spin_once(node, timeout_sec=0.05)
+    if time.monotonic() > due:
+        due = time.monotonic() + 0.2
+        number += 1
+        publisher.publish(UInt32(data=1000 + number))
+        infos = node.get_publishers_info_by_topic("count")
+        said = {
+            "got": got,
+            "nodes": sorted(name for name, _ in node.get_node_names_and_namespaces()),
+            "subscribers": publisher.get_subscription_count(),
+            "hashes": [str(info.topic_type_hash) for info in infos],
+            "publishers": [info.node_name for info in infos],
+        }
+        print(json.dumps(said), flush=True)
+node.destroy_node()
+rclpy.shutdown()

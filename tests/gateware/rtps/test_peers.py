@@ -1,0 +1,172 @@
+"""Real peers and the node in gates, over a TAP device in a namespace of their own, in their default configuration."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+import peers
+from interop.namespace import Namespace, Program
+
+pytestmark = [
+    pytest.mark.skipif(os.geteuid() != 0, reason="only root makes TAP devices"),
+    pytest.mark.timeout(400),
+]
+
+HERE = pathlib.Path(__file__).parent
+SECONDS = 240
+"""How long a simulation may live; it is ended before."""
+PATIENCE = 40.0
+PROGRAMS = {"kilted": "peer_rclpy.py", "jazzy": "peer_rclpy.py", "cyclone": "peer_cyclone.py"}
+
+
+class Gates:
+    """The node, in a namespace in which peers may be started."""
+
+    def __init__(self, folder: pathlib.Path) -> None:
+        self.namespace = Namespace(folder)
+        self.capture = folder / "wire.pcap"
+
+    def __enter__(self) -> Gates:
+        self.namespace.__enter__()
+        self.program = self.namespace.start(
+            sys.executable, str(HERE / "on_tap.py"), str(SECONDS), "pcap", str(self.capture), name="gates"
+        )
+        self.program.wait_for("up", 300)
+        return self
+
+    def __exit__(self, *error: Any) -> None:
+        self.namespace.__exit__(*error)
+
+    def peer(self, kind: str, name: str, seconds: float = 120.0) -> Program:
+        return self.namespace.start(
+            str(peers.require(kind)), str(HERE / PROGRAMS[kind]), name, str(seconds), name=f"{kind}-{name}",
+            FASTDDS_BUILTIN_TRANSPORTS="DEFAULT",
+        )
+
+    def status(self) -> dict[str, Any]:
+        return last(self.program)
+
+    def wait(self, what: str, seen: Callable[[dict[str, Any]], bool], seconds: float = PATIENCE) -> dict[str, Any]:
+        return wait(self.program, what, seen, seconds)
+
+
+def last(program: Program) -> dict[str, Any]:
+    """The last whole line that a program said."""
+    lines = [line for line in program.lines() if line.startswith("{") and line.endswith("}")]
+    found: dict[str, Any] = json.loads(lines[-1]) if lines else {}
+    return found
+
+
+def wait(
+    program: Program, what: str, seen: Callable[[dict[str, Any]], bool], seconds: float = PATIENCE
+) -> dict[str, Any]:
+    """What it says as soon as that holds."""
+    end = time.monotonic() + seconds
+    while not (said := last(program)) or not seen(said):
+        assert time.monotonic() < end, f"{program.name}: {what}: not within {seconds:g} s: {said}"
+        time.sleep(0.05)
+    return said
+
+
+@pytest.fixture(scope="module")
+def gates(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Gates]:
+    with Gates(tmp_path_factory.mktemp("gates")) as found:
+        yield found
+
+
+@pytest.fixture
+def alone(gates: Gates) -> Gates:
+    """The node, and nobody else any more."""
+    gates.wait("nobody is there", lambda said: said["alive"] == 0, 60)
+    return gates
+
+
+def end(program: Program) -> None:
+    program.process.send_signal(signal.SIGINT)
+    program.process.wait(30)
+
+
+@pytest.mark.parametrize("kind", sorted(PROGRAMS))
+def test_messages_pass_both_ways(alone: Gates, kind: str) -> None:
+    before = alone.status()["count"]
+    peer = alone.peer(kind, "peer")
+    said = wait(peer, "ten messages", lambda said: len(said["got"]) >= 10, 60)
+    got = said["got"]
+    assert got == list(range(got[0], got[0] + len(got))), "none is missing, none comes twice"
+    now = alone.wait("messages of the peer", lambda said: said["count"] >= before + 5)
+    assert 1000 < now["received"] < 2000
+    assert said["subscribers"] == 1
+    end(peer)
+    alone.wait("it notices that the peer has gone", lambda said: said["alive"] == 0, 10)
+
+
+@pytest.mark.parametrize("kind", ["kilted", "jazzy"])
+def test_the_node_is_in_the_graph_with_its_endpoints_and_their_types(alone: Gates, kind: str) -> None:
+    peer = alone.peer(kind, "watcher")
+    said = wait(peer, "the node", lambda said: "counter" in said["nodes"] and said["publishers"] == ["counter"], 60)
+    # std_msgs/msg/UInt32, as every distribution since Iron has it
+    assert said["hashes"] == [expected_hash()]
+    end(peer)
+
+
+def expected_hash() -> str:
+    done = subprocess.run(
+        [
+            str(peers.require("kilted")),
+            "-c",
+            "import json, pathlib, ament_index_python as a;"
+            "p = pathlib.Path(a.get_package_share_directory('std_msgs')) / 'msg' / 'UInt32.json';"
+            "print(json.loads(p.read_text())['type_hashes'][0]['hash_string'])",
+        ],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
+    return done.stdout.strip()
+
+
+def test_several_peers_of_all_kinds_at_once(alone: Gates) -> None:
+    programs = [alone.peer(kind, f"{kind}{n}") for n in range(2) for kind in ("kilted", "jazzy", "cyclone")][:5]
+    for program in programs:
+        wait(program, "ten messages", lambda said: len(said["got"]) >= 10, 90)
+    alone.wait("all of them", lambda said: said["alive"] >= 5 and said["matched"] >= 10)
+    for program in programs:
+        end(program)
+
+
+def test_a_killed_peer_expires(alone: Gates) -> None:
+    peer = alone.peer("kilted", "victim")
+    wait(peer, "a message", lambda said: len(said["got"]) >= 1, 60)
+    peer.process.kill()
+    alone.wait("its lease of 20 s is over", lambda said: said["alive"] == 0 and said["matched"] == 0, 60)
+
+
+def test_what_the_node_sent_is_well_formed(alone: Gates) -> None:
+    alone.program.process.send_signal(signal.SIGSTOP)
+    try:
+        fields = ["-T", "fields", "-E", "separator=|", "-e", "_ws.malformed", "-e", "_ws.expert.message", "-e", "ip.src"]
+        done = subprocess.run(
+            [str(peers.require("tshark")), "-r", str(alone.capture), "-o", "udp.check_checksum:TRUE", *fields],
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+    finally:
+        alone.program.process.send_signal(signal.SIGCONT)
+    lines = [line.split("|") for line in done.stdout.splitlines()]
+    ours = [line for line in lines if line[2] == "192.168.1.100"]
+    assert len(ours) > 100
+    assert [line for line in ours if line[0] or re.search("hecksum|alformed", line[1])] == []
