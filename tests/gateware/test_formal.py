@@ -6,10 +6,11 @@ import pytest
 
 from gateware import formal
 from gateware.formal import Spec
-from gateware.proofs import arbiter, checksum, fifo, header, mac, raw_udp, reassembly
+from gateware.proofs import arbiter, arp_cache, checksum, fifo, header, mac, raw_udp, reassembly
 
 SPECS = (
     *arbiter.SPECS,
+    *arp_cache.SPECS,
     *header.SPECS,
     *checksum.SPECS,
     *fifo.SPECS,

@@ -39,7 +39,7 @@ class ArpCache(wiring.Component):
     and 5 more.
 
     **Requests**: `ask` is high for one cycle when a request for `ask_ip` shall be sent; never while `ask_ready` is low. The
-    first is sent 3 cycles after the answer to the question, or else when the entry is visited next.
+    first is sent 2 cycles after the answer to the question, or else when the entry is visited next.
 
     **What is learned**: while `learn` is high, which holds until `learned` is, `ip` has the hardware address `mac`. An entry
     of that address takes it, whether it was asked for or not, as in RFC 826. Without an entry the address is remembered only
@@ -49,7 +49,7 @@ class ArpCache(wiring.Component):
     is forgotten `timeout` after its address was last learned.
 
     Time is counted in ticks of `tick` cycles (1024 with 16 entries), in which each entry is visited once: intervals are met
-    within one tick. `enable` stays high once it is. All is forgotten at reset.
+    within one tick and the cycles of an answer. `enable` stays high once it is. All is forgotten at reset.
     """
 
     def __init__(self, width: int = 4, resolving: int = 4) -> None:
