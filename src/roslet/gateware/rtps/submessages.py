@@ -120,7 +120,7 @@ class Submessages(wiring.Component):
         found = Signal()  # a proxy; `endpoint` is the user's
         endpoint = Signal(range(self._peers.endpoints))
         info = Signal(32)
-        skip = Signal(14)
+        skip = Signal(15)
         gone, has_key = Signal(), Signal()
         reason = Signal(2)  # why DATA is not taken
         unmatched, old, early, busy = range(4)
@@ -201,6 +201,7 @@ class Submessages(wiring.Component):
                     m.next = "FIND"
                 with m.If(ended):
                     m.next = "INVALID"
+            writer = meta.id != submessage.ACKNACK  # it is from one
             with m.State("FIND"):  # `word` is the id of the peer's endpoint
                 m.next = "SCAN"
                 with m.If(~meta.known):
@@ -209,10 +210,9 @@ class Submessages(wiring.Component):
                     m.d.sync += spdp.eq(1)
                     m.next = "FOUND"
                 for value, kind in _BUILTINS.items():
-                    with m.If(word == value):
+                    with m.If((word == value) & (writer == kind // tables.PUBLICATIONS_WRITER)):
                         m.d.sync += [builtin.eq(1), builtin_kind.eq(kind), found.eq(meta.known)]
                         m.next = "FOUND"
-            writer = meta.id != submessage.ACKNACK
             find_endpoint(
                 m, self._peers, self.peers, self.matched, word, meta.slot, writer, endpoint, info, found, "FOUND"
             )
@@ -374,6 +374,8 @@ class Submessages(wiring.Component):
                 with m.If(~known):
                     m.d.sync += [wanted.eq(after), wanted_high.eq(after_high)]
                 take("HEARD")
+                with m.If(sn[63]):
+                    m.next = "INVALID"
             with m.State("HEARD"):
                 missing = ~behind
                 with m.If(came | (ended & ~found)):
@@ -394,6 +396,8 @@ class Submessages(wiring.Component):
                 with m.If(skip[0] & known & ~behind):
                     m.d.sync += [wanted.eq(sn), wanted_high.eq(sn[32:])]
                 self._bits(m, number, came, ended, skip, "GAP NEXT")
+                with m.If(sn[63]):
+                    m.next = "INVALID"
             with m.State("GAP SET"):
                 # The run of ones at the beginning of the first word, a bit in two cycles; those behind it are asked for again.
                 one = number.bit_select(~last_lo[:5], 1)

@@ -1,0 +1,230 @@
+"""Every template, composed in simulation and read by the software codec and by tshark: what it says, and its lengths."""
+
+from __future__ import annotations
+
+import pathlib
+import subprocess
+from typing import Any
+
+import pytest
+
+import pcap
+import peers as programs
+from gateware.words import Tables, WordBench, words
+from roslet.gateware.rtps.composer import Composer
+from roslet.gateware.rtps.rom import Op, Register, Rom
+from roslet.gateware.rtps.tables import Local, OwnMap, PeerMap
+from roslet.wire.rtps import endpoint_data, guid, inline_qos, message, participant_data
+from roslet.wire.rtps.ack_nack import AckNack
+from roslet.wire.rtps.data import FLAG_D, FLAG_K, Data
+from roslet.wire.rtps.gap import Gap
+from roslet.wire.rtps.heartbeat import Heartbeat
+from roslet.wire.rtps.info_dst import InfoDestination
+
+PREFIX, THEIRS = b"\1\x52" + bytes(range(10)), bytes(range(0x30, 0x3C))
+IP = bytes((192, 168, 1, 100))
+KEY = b"\0\0\x21\4"
+HASH = "RIHS01_" + "5a" * 32
+WRITERS = [Local("rt/a", "pkg::msg::dds_::A_", words=5, type_hash=HASH), Local("rt/bcd", "B", True, True, words=3, depth=4)]
+READERS = [Local("rt/longer_name", "C", reliable=True)]
+FIRST, LAST, NUMBER, COUNT, BITMAP = (7 << 32) + 0xFFFFFFFE, (8 << 32) + 5, (7 << 32) + 1, 77, 0xA0000001
+WANTED = (3 << 32) + 9
+SLOT, ENDPOINT, LOCAL = 1, 2, 1
+TEXT = bytes(range(1, 13))
+
+own = OwnMap(WRITERS, READERS)
+peers = PeerMap(2, 3)
+rom = Rom(own, 42, 20.0)
+
+
+class Composed:
+    """What came of a template: its words as octets, in how many cycles from `start`, and after which `done` came."""
+
+    def __init__(self, octets: bytes, first: int, last: int, done: int) -> None:
+        self.octets, self.first, self.last, self.done = octets, first, last, done
+
+
+def compose(names: list[str], builtin: bool = False, kind: int = 0, size: int = 3) -> dict[str, Composed]:
+    init = own.init(PREFIX, IP, 7410, 7411)
+    sample = own.samples[1]
+    init[sample : sample + 4] = [size, *words(TEXT)]
+    theirs = [0] * peers.depth
+    at = peers._participants + 16 * SLOT
+    theirs[at : at + 3] = words(THEIRS)
+    for place in (peers._endpoints + 8 * ENDPOINT, peers._builtins + 32 * SLOT + 8 * kind):
+        theirs[place], theirs[place + 4], theirs[place + 5] = words(KEY)[0], WANTED & 0xFFFFFFFF, WANTED >> 32
+    block: Any = Composer(rom, peers, own)
+    bench = WordBench(Tables(peers, own, init, theirs=theirs, block=block), stalls=0)
+    found: dict[str, Composed] = {}
+
+    async def process(ctx: Any) -> None:
+        values = {"first": FIRST, "last": LAST, "number": NUMBER}
+        registers = {name: value & 0xFFFFFFFF for name, value in values.items()}
+        registers |= {f"{name}_high": value >> 32 for name, value in values.items()}
+        registers |= {"count": COUNT, "bitmap": BITMAP, "encapsulation": 0x0100}
+        assert {name.name.lower() for name in Register} == set(registers)
+        ctx.set(block.registers, registers)
+        subject = {"builtin": builtin, "kind": kind, "slot": SLOT, "endpoint": ENDPOINT, "entity": LOCAL + 1}
+        ctx.set(block.subject, {**subject, "sample": sample, "words": size})
+        for name in names:
+            ctx.set(block.at, rom.start[name])
+            ctx.set(block.start, 1)
+            pushed, times, done, cycle = [], [], 0, 0
+            while not done:
+                _, _, push, word, done = await ctx.tick().sample(block.push, block.word, block.done)
+                ctx.set(block.start, 0)
+                if push:
+                    pushed.append(word)
+                    times.append(cycle)
+                cycle += 1
+                assert cycle < 500
+            octets = b"".join(word.to_bytes(4, "little") for word in pushed)
+            found[name] = Composed(octets, times[0], times[-1], cycle - 1)
+            _, _, push, done = await ctx.tick().sample(block.push, block.done)
+            assert not push and not done
+
+    bench.drive(process)
+    bench.run()
+    return found
+
+
+NAMES = list(rom.start)
+
+
+@pytest.fixture(scope="module")
+def composed() -> dict[str, Composed]:
+    return compose(NAMES)
+
+
+def read(octets: bytes) -> list[Any]:
+    header, found = message.parse(octets)
+    assert header.guid_prefix == PREFIX
+    assert octets[:8] == b"RTPS\2\3\1\x52"
+    return found
+
+
+def directed(octets: bytes) -> list[Any]:
+    to, *found = read(octets)
+    assert to == InfoDestination(THEIRS)
+    return found
+
+
+def test_there_is_a_template_for_all_that_a_node_says() -> None:
+    assert set(NAMES) == {
+        "participant", "publication0", "publication1", "subscription0", "publication_gone", "subscription_gone",
+        "publication_heartbeat", "subscription_heartbeat", "publication_acknack", "subscription_acknack",
+        "message", "message_heartbeat", "heartbeat", "acknack", "gap",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_declared_lengths_are_emitted_lengths_and_a_word_comes_each_cycle(composed: dict[str, Composed], name: str) -> None:
+    """The walk of the codec ends where the octets do: no length says less or more, and none of zero hides it."""
+    one = composed[name]
+    at = 20
+    while at < len(one.octets):
+        length = int.from_bytes(one.octets[at + 2 : at + 4], "little")
+        assert length > 0 and length % 4 == 0
+        at += 4 + length
+    assert at == len(one.octets)
+    has_message = any(rom.words[n] >> 32 == Op.MESSAGE.value for n in range(rom.start[name], rom.start[name] + rom.size[name]))
+    count = len(one.octets) // 4
+    # `size` counts the place of the message as a word.
+    assert count == rom.size[name] + (3 - 1 if has_message else 0)
+    assert count <= rom.size[name] + 3
+    assert one.first <= 2 and one.last - one.first <= count - 1 + has_message
+    assert one.done - one.last in (0, 1)
+    assert message.parse(one.octets)
+
+
+def test_the_announcement_says_who_and_where_we_are(composed: dict[str, Composed]) -> None:
+    (data,) = read(composed["participant"].octets)
+    assert (data.writer_id, data.sequence, data.flags) == (guid.ENTITYID_SPDP_BUILTIN_PARTICIPANT_WRITER, NUMBER, FLAG_D)
+    said = participant_data.parse(data.payload)
+    assert said.guid == PREFIX + guid.ENTITYID_PARTICIPANT
+    assert (said.domain_id, said.lease, said.builtin_endpoints) == (42, 20 * 10**9, 0x3F)
+    assert [str(one) for one in said.metatraffic_unicast] == ["192.168.1.100:7410"]
+    assert [str(one) for one in said.default_unicast] == ["192.168.1.100:7411"]
+    assert said.user_data == b"enclave=/;"
+
+
+@pytest.mark.parametrize("name", ["publication0", "publication1", "subscription0"])
+def test_endpoints_are_described_as_they_are(composed: dict[str, Composed], name: str) -> None:
+    (data,) = directed(composed[name].octets)
+    writer, n = name.startswith("publication"), int(name[-1])
+    local = (WRITERS if writer else READERS)[n]
+    kind = "PUBLICATIONS" if writer else "SUBSCRIPTIONS"
+    assert data.reader_id == getattr(guid, f"ENTITYID_SEDP_BUILTIN_{kind}_READER")
+    assert data.writer_id == getattr(guid, f"ENTITYID_SEDP_BUILTIN_{kind}_WRITER")
+    assert data.sequence == NUMBER
+    said = endpoint_data.parse(data.payload)
+    assert said.guid == PREFIX + bytes((0, 0, n + 1, 3 if writer else 4))
+    assert (said.topic, said.type_name) == (local.topic, local.type_name)
+    assert (said.qos.reliable, said.qos.durability) == (local.reliable, int(local.transient_local))
+    assert said.qos.history == (0, local.depth)
+    assert said.qos.user_data == (f"typehash={HASH};".encode() if local.type_hash else b"")
+
+
+@pytest.mark.parametrize("kind", ["publication", "subscription"])
+def test_an_endpoint_that_is_gone_is_disposed_of(composed: dict[str, Composed], kind: str) -> None:
+    (data,) = directed(composed[f"{kind}_gone"].octets)
+    whose = PREFIX + bytes((0, 0, LOCAL + 1, 3 if kind == "publication" else 4))
+    assert data.flags == FLAG_K
+    status = inline_qos.parse(bytes(data.inline_qos), True)
+    assert (status.key_hash, status.status) == (whose, 3)
+    assert endpoint_data.parse_key(data.payload) == whose
+
+
+@pytest.mark.parametrize("size", [0, 1, 3])
+def test_a_message_is_sent_with_its_length(size: int) -> None:
+    both = compose(["message", "message_heartbeat"], size=size)
+    (data,) = directed(both["message"].octets)
+    text = b"\0\1\0\0" + TEXT[: 4 * size]
+    assert data == Data(KEY, b"\0\0\2\3", NUMBER, text, b"", FLAG_D)
+    data, beat = directed(both["message_heartbeat"].octets)
+    assert data.payload == text
+    assert beat == Heartbeat(KEY, b"\0\0\2\3", FIRST, LAST, COUNT)
+
+
+def test_heartbeats_acknacks_and_gaps_have_their_numbers(composed: dict[str, Composed]) -> None:
+    assert directed(composed["heartbeat"].octets) == [Heartbeat(KEY, b"\0\0\2\3", FIRST, LAST, COUNT)]
+    (ack,) = directed(composed["acknack"].octets)
+    assert (ack.reader_id, ack.writer_id, ack.count, ack.final) == (b"\0\0\2\4", KEY, COUNT, True)
+    assert ack.state.numbers() == [WANTED, WANTED + 2, WANTED + 31]
+    (gap,) = directed(composed["gap"].octets)
+    assert isinstance(gap, Gap) and isinstance(ack, AckNack)
+    assert (gap.reader_id, gap.writer_id, gap.start) == (KEY, b"\0\0\2\3", NUMBER)
+    assert (gap.gaps.base, gap.gaps.bits) == (FIRST, 0)
+
+
+@pytest.mark.parametrize(("kind", "name"), [(2, "publication"), (3, "subscription")])
+def test_discovery_is_acknowledged_by_its_own_readers_and_told_by_its_own_writers(kind: int, name: str) -> None:
+    which = f"ENTITYID_SEDP_BUILTIN_{name.upper()}S"
+    reader, writer = getattr(guid, f"{which}_READER"), getattr(guid, f"{which}_WRITER")
+    both = compose([f"{name}_acknack", f"{name}_heartbeat"], builtin=True, kind=kind)
+    (ack,) = directed(both[f"{name}_acknack"].octets)
+    assert (ack.reader_id, ack.writer_id) == (reader, writer)
+    assert ack.state.base == WANTED
+    (beat,) = directed(both[f"{name}_heartbeat"].octets)
+    assert (beat.reader_id, beat.writer_id, beat.first, beat.last) == (reader, writer, FIRST, LAST)
+
+
+def test_tshark_finds_nothing_malformed(composed: dict[str, Composed], tmp_path: pathlib.Path) -> None:
+    path = tmp_path / "composed.pcap"
+    pcap.write(path, [composed[name].octets for name in NAMES])
+    fields = ["frame.protocols", "_ws.malformed", "_ws.expert.message"]
+    command = [str(programs.require("tshark")), "-r", str(path), "-T", "fields"]
+    command += [part for field in fields for part in ("-e", field)]
+    said = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
+    lines = said.rstrip("\n").split("\n")
+    assert len(lines) == len(NAMES)
+    for line in lines:
+        protocols, malformed, expert = line.split("\t")
+        assert "rtps" in protocols and not malformed and not expert, line
+
+
+def test_words_that_are_not_whole_are_refused() -> None:
+    from roslet.gateware.rtps.rom import _words
+
+    with pytest.raises(ValueError, match="5 octets are no words"):
+        _words(bytes(5))
