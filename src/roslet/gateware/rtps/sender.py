@@ -25,8 +25,11 @@ class Sender(wiring.Component):
     Ports: `publish0` .. for each writer of the user, the first `users` of the tables' writers: its messages. `alive`,
     `matched`, `due`, `greet` as `Discovery` and `Submessages` have them, `due0`, `due1` one from each; `announce`, high for a
     cycle, has us announced to all at `group_port`; `peers` and `own`, read ports, and `write`; `template`, `start`, `done`, `registers`,
-    `subject`, of the composer; `room`, `busy`, `finish`, `ip`, `port`, of the outbox.
+    `subject`, of the composer; `room`, `busy`, `finish`, `ip`, `port`, of the outbox; `writers`, `readers`, a bit
+    for each of ours that is enabled.
 
+    - When one is enabled or disabled, all of our endpoints are told of again, under new numbers: of those that are not enabled,
+      that they are gone.
     - A message is kept, replacing the oldest that its writer keeps, and sent at once to each reader that matches, with a
       HEARTBEAT to those that are reliable.
     - A peer's writer gets an ACKNACK when it is due: what is missing up to its last, `window` of it at most, as peers put
@@ -69,6 +72,10 @@ class Sender(wiring.Component):
                 "finish": Out(1),
                 "ip": Out(32),
                 "port": Out(16),
+                **{
+                    name: In(max(1, len(table)), init=(1 << max(1, len(table))) - 1)
+                    for name, table in (("writers", own.writers), ("readers", own.readers))
+                },
             }
         )
 
@@ -153,6 +160,7 @@ class Sender(wiring.Component):
             ]
             return Array(places)[local[: max(1, (len(places) - 1).bit_length())]]
 
+        first_word = Mux(kind[0], own.own(tables.SUBSCRIPTIONS), own.own(tables.PUBLICATIONS))
         turn = Signal()
         streams = [getattr(self, f"publish{n}").stream for n in range(self._users)]
         pending = Cat(stream.valid for stream in streams) if streams else C(0)
@@ -161,6 +169,9 @@ class Sender(wiring.Component):
             item = Array(streams)[local[: max(1, (len(streams) - 1).bit_length())]]
         words_kept = Signal(16)
         long = Signal()
+
+        told = Signal(len(self.writers) + len(self.readers), init=-1)  # as peers have been told
+        enabled = Cat(self.writers, self.readers)
 
         with m.FSM():
             with m.State("IDLE"):
@@ -175,7 +186,10 @@ class Sender(wiring.Component):
                 ]
                 with m.If(left != 0):
                     m.d.sync += left.eq(left - 1)
-                with m.If(pending.any() & ~turn):
+                with m.If(enabled != told):
+                    m.d.sync += [cursor.eq(cursor), left.eq(left), kind.eq(0)]
+                    m.next = "CHANGED"
+                with m.Elif(pending.any() & ~turn):
                     m.d.sync += [cursor.eq(cursor), left.eq(left), publishing.eq(1), builtin.eq(0)]
                     for n in reversed(range(self._users)):
                         with m.If(pending[n]):
@@ -192,6 +206,21 @@ class Sender(wiring.Component):
                     m.next = "GREET"
                 with m.Elif(announcing):
                     m.next = "ANNOUNCE"
+            # -- all endpoints are told of again, by new numbers: of writers, then of readers
+            with m.State("CHANGED"):
+                m.d.sync += told.eq(enabled)
+                m.d.comb += self.own.addr.eq(first_word)
+                m.next = "FROM"
+            with m.State("FROM"):
+                m.d.comb += self.own.addr.eq(first_word)
+                m.next = "ON"
+            with m.State("ON"):
+                self._write(m, first_word, self.own.data + Mux(kind[0], len(own.readers), len(own.writers)))
+                m.d.sync += kind.eq(1)
+                m.next = "CHANGED"
+                with m.If(kind[0]):
+                    m.d.sync += left.eq(many)
+                    m.next = "OVER"
             # -- announcements
             with m.State("ANNOUNCE"):
                 m.d.sync += [announcing.eq(0), self.ip.eq(GROUP), self.port.eq(self.group_port)]
@@ -351,7 +380,10 @@ class Sender(wiring.Component):
                     else C(0)
                     for name, table in (("publication", own.writers), ("subscription", own.readers))
                 ]
-                compose(Mux(kind[0], starts[1], starts[0]), "NEXT")
+                gone = rom.start["publication_gone"], rom.start["subscription_gone"]
+                here = (bits.bit_select(local[: len(bits).bit_length()], 1) for bits in (self.writers, self.readers))
+                told_of = [Mux(bit, start, C(end)) for bit, start, end in zip(here, starts, gone, strict=True)]
+                compose(Mux(kind[0], told_of[1], told_of[0]), "NEXT")
             with m.State("SAMPLE"):
                 m.d.sync += [subject.words.eq(self.own.data[:16]), padding.eq(self.own.data[16:18])]
                 compose(rom.start["message"], "NEXT")
