@@ -37,9 +37,9 @@ class Discovery(wiring.Component):
     the QoS does not agree; and `drop_malformed` of `Parameters`.
     """
 
-    def __init__(self, peers: PeerMap, own: OwnMap) -> None:
+    def __init__(self, peers: PeerMap, own: OwnMap, judge_domain: bool = True) -> None:
         self._peers, self._own = peers, own
-        self._parameters = Parameters(peers, own)
+        self._parameters = Parameters(peers, own, judge_domain)
         super().__init__(
             {
                 "i": In(MessageSignature(DISCOVERY)),

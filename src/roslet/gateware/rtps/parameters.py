@@ -99,7 +99,8 @@ understood; `reliable` and `durability`, kinds, as offered or requested."""
 class Parameters(wiring.Component):
     """Reads one list at a time.
 
-    Ports: `i`, lists with their encapsulation header; `peers` and `own`, read ports; `write`; `addresses`, `domain`, ours.
+    Ports: `i`, lists with their encapsulation header; `peers` and `own`, read ports; `write`; `addresses`, `domain`, ours: that
+    is not looked at where `judge_domain` is false.
     `read` is what the list has said, and `same` a bit for each of our endpoints of the other kind: it has this topic and this
     type. Both are steady while `done` is high: the list's good end is at `i`, and stays there until `proceed` is high for a
     cycle. After a bad end the next list is read.
@@ -111,8 +112,8 @@ class Parameters(wiring.Component):
     list, or a GUID that is not the sender's.
     """
 
-    def __init__(self, peers: PeerMap, own: OwnMap) -> None:
-        self._peers, self._own = peers, own
+    def __init__(self, peers: PeerMap, own: OwnMap, judge_domain: bool = True) -> None:
+        self._peers, self._own, self._judge_domain = peers, own, judge_domain
         self.locals = 1 << own.local_bits
         super().__init__(
             {
@@ -258,7 +259,8 @@ class Parameters(wiring.Component):
                 with m.Case(kind):
                     self._locator(m, at, step, word, number, last, flag, ip, ((word ^ own_ip) & mask) == 0, keep)
             with m.Case(_What.DOMAIN):
-                refuse(first & (number != self.domain))
+                if self._judge_domain:
+                    refuse(first & (number != self.domain))
             with m.Case(_What.TAG):
                 refuse(first & (number > 1))  # a text with more than its NUL
             for kind, flag, is_type in ((_What.TOPIC, read.topic, 0), (_What.TYPE, read.type, 1)):

@@ -13,7 +13,7 @@ from roslet.gateware.meta import ADDRESSES, UDP_RX, UDP_TX, LookupSignature
 from roslet.gateware.rtps.composer import Composer
 from roslet.gateware.rtps.discovery import Discovery
 from roslet.gateware.rtps.outbox import HEADER, Outbox
-from roslet.gateware.rtps.ports import USER
+from roslet.gateware.rtps.ports import USER, WriteSignature
 from roslet.gateware.rtps.queue import DatagramQueue
 from roslet.gateware.rtps.rom import Rom
 from roslet.gateware.rtps.sender import Sender
@@ -36,7 +36,7 @@ class Participant(wiring.Component):
                         the beginning: its octets, without the encapsulation header
     prefix              our GUID prefix
     address, ports      ours, of discovery and of the user's messages
-    domain              its number
+    domain              its number, or None: it is not told, and that of others not looked at
     participants, endpoints
                         how many others, and how many of their endpoints that match ours, are known at once
     longest             octets of the longest datagram that is received
@@ -45,6 +45,10 @@ class Participant(wiring.Component):
     Ports: `udp_rx` and `udp_tx`, data of datagrams, `lookup`; `publish0` .., messages; `receive0` ..,
     messages, with what is known of them; `room`, a bit for each reader, as `Submessages` has it; `addresses`; `tick`, `announce`,
     `sweep`, high for a cycle each second, when we shall be announced, and when readers shall be reminded; `drop_<block>_<reason>`.
+
+    What is known at run time only: `own`, writes our own memory, for which nothing of this may be going on: hold it in reset
+    meanwhile; `group_port` and `source_port`, where all are announced to, and what we send from; `writers_enabled`,
+    `readers_enabled`, as `Sender` has them. `own_map` says what lies where.
     """
 
     def __init__(
@@ -54,7 +58,7 @@ class Participant(wiring.Component):
         prefix: bytes,
         address: bytes,
         ports: tuple[int, int, int],
-        domain: int,
+        domain: int | None,
         kept: Sequence[tuple[Local, bytes]] = (),
         participants: int = 8,
         endpoints: int = 16,
@@ -62,10 +66,10 @@ class Participant(wiring.Component):
         lease: float = 20.0,
     ) -> None:
         self._peers = peers = PeerMap(participants, endpoints)
-        self._own = own = OwnMap([*writers, *(local for local, _ in kept)], readers)
+        self.own_map = self._own = own = OwnMap([*writers, *(local for local, _ in kept)], readers)
         self._domain = domain
-        self.group_port, self._meta_port, user_port = ports
-        self._init = own.init(prefix, address, self._meta_port, user_port)
+        group_port, meta_port, user_port = ports
+        self._init = own.init(prefix, address, meta_port, user_port)
         for n, (local, octets) in enumerate(kept, len(writers)):
             words = [int.from_bytes(octets[at : at + 4], "little") for at in range(0, len(octets), 4)]
             at = own.samples[n] + own.stride(local) * (1 % local.depth)
@@ -82,7 +86,7 @@ class Participant(wiring.Component):
             "queue": DatagramQueue(longest),
             "walker": Walker(peers, own),
             "submessages": Submessages(peers, own),
-            "discovery": Discovery(peers, own),
+            "discovery": Discovery(peers, own, domain is not None),
             "turns": Turns(peers),
             "sender": Sender(self._rom, peers, own, len(writers), max(1, longest // DISCOVERY_SIZE)),
             "outbox": Outbox(most, depth),
@@ -107,6 +111,11 @@ class Participant(wiring.Component):
                 "sweep": In(1),
                 "alive": Out(participants),
                 "matched": Out(endpoints),
+                "own": In(WriteSignature(own.address_bits)),
+                "group_port": In(16, init=group_port),
+                "source_port": In(16, init=meta_port),
+                "writers_enabled": self._blocks["sender"].signature.members["writers"],
+                "readers_enabled": self._blocks["sender"].signature.members["readers"],
                 **{self.drop_name(block, name): Out(1) for block, name in self.drops},
             }
         )
@@ -152,7 +161,7 @@ class Participant(wiring.Component):
             discovery.heard.eq(walker.heard),
             discovery.heard_slot.eq(walker.heard_slot),
             discovery.addresses.eq(self.addresses),
-            discovery.domain.eq(self._domain),
+            discovery.domain.eq(0 if self._domain is None else self._domain),
             discovery.tick.eq(self.tick),
             submessages.room.eq(self.room),
             submessages.over.eq(walker.idle),
@@ -165,7 +174,7 @@ class Participant(wiring.Component):
             turns.greet.eq(discovery.greet),
             turns.greet_slot.eq(discovery.greet_slot),
             turns.announce.eq(self.announce),
-            turns.sweep.eq(self.sweep),
+            turns.sweep.eq(self.sweep | sender.again),
             turns.taken.eq(sender.taken),
             sender.job.eq(turns.job),
             sender.valid.eq(turns.valid),
@@ -183,7 +192,9 @@ class Participant(wiring.Component):
             outbox.finish.eq(sender.finish),
             outbox.ip.eq(sender.ip),
             outbox.port.eq(sender.port),
-            outbox.source_port.eq(self._meta_port),
+            outbox.source_port.eq(self.source_port),
+            sender.writers.eq(self.writers_enabled),
+            sender.readers.eq(self.readers_enabled),
             self.alive.eq(discovery.alive),
             self.matched.eq(discovery.matched),
         ]
@@ -209,7 +220,7 @@ class Participant(wiring.Component):
                 m.d.comb += [user.data.eq(given) for user in users]
         for mem, writers in (
             (peers, (walker.source, submessages.write, discovery.write)),
-            (own, (sender.write,)),
+            (own, (sender.write, self.own)),
         ):
             write = mem.write_port()
             m.d.comb += [

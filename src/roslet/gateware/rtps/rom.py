@@ -99,12 +99,11 @@ class Rom:
     """The templates of a node with these topics; `start[name]` is where one begins in `words`, `size[name]` its words
     without the message. `lease` in seconds."""
 
-    def __init__(self, own: OwnMap, domain: int | None, lease: float, enclave: str = "/", texts: bool = False) -> None:
+    def __init__(self, own: OwnMap, domain: int | None, lease: float, enclave: str = "/") -> None:
         self.own = own
         self.words: list[int] = []
         self.start: dict[str, int] = {}
         self.size: dict[str, int] = {}
-        self._texts = texts
         self._references = {
             **{PLACEHOLDERS[n]: (Op.OWN, own.own(tables.OWN_PREFIX) + n) for n in range(3)},
             PLACEHOLDERS[3]: (Op.OWN, own.own(tables.OWN_IP)),
@@ -214,11 +213,14 @@ class Rom:
         self._add(f"{builtin}_acknack", [*self._directed, *self._acknack((reader, their_writer))])
 
     def _endpoint(self, local: Local, n: int, writer: bool) -> list[Item]:
+        """With names that are known at run time only, parameters of the greatest size: behind its NUL a name ends in zeros."""
+        names = (local.topic, local.type_name)
+        if local.rooms is not None:
+            names = (_stand_in(local.rooms[0], "t"), _stand_in(local.rooms[1], "y"))
         kind = RELIABLE if local.reliable else BEST_EFFORT
         value = EndpointData(
             _PREFIX + entity_id(n, writer),
-            local.topic,
-            local.type_name,
+            *names,
             Qos(
                 reliability=(kind, DEFAULT_BLOCKING),
                 durability=TRANSIENT_LOCAL if local.transient_local else VOLATILE,
@@ -227,7 +229,14 @@ class Rom:
             ),
             participant_guid=_PREFIX + guid.ENTITYID_PARTICIPANT,
         )
-        return _words(value.emit(), self._references)
+        items = _words(value.emit(), self._references)
+        if local.rooms is not None:
+            for is_type, name in enumerate(names):
+                first = items.index((Op.LITERAL, int.from_bytes(name[:4].encode(), "little"))) - 1
+                at = self.own.text_address(not writer, bool(is_type), n)
+                for word in range(1 + (local.rooms[is_type] + 3) // 4):
+                    items[first + word] = (Op.OWN, at + word)
+        return items
 
     def _user(self) -> None:
         key: Item = (Op.PROXY, tables.KEY)
@@ -257,6 +266,11 @@ def entity_id(n: int, writer: bool) -> bytes:
     """The entity id of our endpoint n."""
     kind = guid.ENTITYKIND_USER_WRITER_NO_KEY if writer else guid.ENTITYKIND_USER_READER_NO_KEY
     return bytes((0, 0, n + 1, kind))
+
+
+def _stand_in(room: int, letter: str) -> str:
+    """A name that fills a room of so many octets, and whose first word nothing else is."""
+    return letter * (room - 1)
 
 
 def _register(register: Register) -> Item:

@@ -32,8 +32,11 @@ class Sender(wiring.Component):
     Ports: `publish0` .. for each writer of the user, the first `users` of the tables' writers: its messages. `job`, `valid`,
     `taken`, of `Turns`; `matched`, the user proxies that there are; `group_port`, where all are to be announced to;
     `peers` and `own`, read ports, and `write`; `template`, `start`, `done`, `which`, `register`, `subject`, of the composer; `room`, `busy`, `finish`, `ip`,
-    `port`, of the outbox.
+    `port`, of the outbox; `writers`, `readers`, a bit for each of ours that is enabled; `again`, high for a cycle when every
+    proxy must be served once.
 
+    - When one of ours is enabled or disabled, all are told of again, under new numbers: of those that are not enabled, that
+      they are gone.
     - A message is kept, replacing the oldest that its writer keeps, and sent at once to each reader that matches, with a
       HEARTBEAT to those that are reliable. Between two messages somebody else is served.
     - A peer's writer gets an ACKNACK when it is due: what is missing up to its last, `window` of it at most, as peers put
@@ -72,6 +75,11 @@ class Sender(wiring.Component):
                 "finish": Out(1),
                 "ip": Out(32),
                 "port": Out(16),
+                "again": Out(1),
+                **{
+                    name: In(max(1, len(table)), init=(1 << max(1, len(table))) - 1)
+                    for name, table in (("writers", own.writers), ("readers", own.readers))
+                },
             }
         )
 
@@ -188,6 +196,8 @@ class Sender(wiring.Component):
     def _idle(self, m: Module) -> None:
         job, subject = self.job, self.subject
         pending = Cat(getattr(self, f"publish{n}").stream.valid for n in range(self._users))
+        enabled = Cat(self.writers, self.readers)
+        told = Signal(len(enabled), init=-1)  # as peers have been told
         with m.State("IDLE"):
             m.d.sync += [
                 self._yield.eq(0),
@@ -198,7 +208,10 @@ class Sender(wiring.Component):
                 subject.slot.eq(Mux(job.greet, job.index, job.index[2:])),
                 subject.endpoint.eq(job.index),
             ]
-            with m.If(self.valid & ~(pending.any() & ~self._yield)):
+            with m.If(enabled != told):
+                m.d.sync += [told.eq(enabled), subject.kind.eq(0)]
+                m.next = "CHANGED"
+            with m.Elif(self.valid & ~(pending.any() & ~self._yield)):
                 m.d.comb += self.taken.eq(1)
                 m.next = "LOOK"
                 with m.If(job.announce):
@@ -217,6 +230,26 @@ class Sender(wiring.Component):
                     m.next = "PUBLISH"
             with m.If(~job.greet):
                 m.d.comb += self.peers.addr.eq(self._peers.endpoint(job.index, tables.INFO))
+
+        # All endpoints are told of again, by new numbers: of writers, then of readers.
+        with m.State("CHANGED"):
+            m.d.comb += self.own.addr.eq(self._first_word())
+            m.next = "FIRST"
+        with m.State("FIRST"):
+            m.next = "NEW FIRST"
+        with m.State("NEW FIRST"):
+            many = Mux(subject.kind[0], len(self._own.readers), len(self._own.writers))
+            self._write(m, self._first_word(), self.own.data + many)
+            m.d.sync += subject.kind.eq(1)
+            m.next = "CHANGED"
+            with m.If(subject.kind[0]):
+                m.d.comb += self.again.eq(1)
+                m.next = "IDLE"
+
+    def _first_word(self) -> Value:
+        """Where the first number is that our discovery writer has."""
+        own = self._own
+        return Mux(self.subject.kind[0], own.own(tables.SUBSCRIPTIONS), own.own(tables.PUBLICATIONS))
 
     def _announcements(self, m: Module) -> None:
         with m.State("ANNOUNCE"):
@@ -307,9 +340,8 @@ class Sender(wiring.Component):
         kinds = len(own.writers) - 1, len(own.readers) - 1  # ages of the oldest that discovery has to say
         with m.State("READER"):
             m.d.sync += self.ip.eq(self.peers.data)
-            first_word = Mux(subject.kind[0], own.own(tables.SUBSCRIPTIONS), own.own(tables.PUBLICATIONS))
             m.d.comb += self.own.addr.eq(
-                Mux(subject.builtin, first_word, self._writer_word(tables.WRITER_LAST))
+                Mux(subject.builtin, self._first_word(), self._writer_word(tables.WRITER_LAST))
             )
             m.next = "READER PORT"
         with m.State("READER PORT"):
@@ -376,7 +408,14 @@ class Sender(wiring.Component):
                 self._choose([C(self._rom.start[f"{name}{n}"]) for n in range(len(table))])
                 for name, table in (("publication", own.writers), ("subscription", own.readers))
             ]
-            self._compose(m, Mux(subject.kind[0], starts[1], starts[0]), "NEXT")
+            told = [
+                Mux(bits.bit_select(self._local[: len(bits).bit_length()], 1), start, self._rom.start[f"{name}_gone"])
+                for bits, start, name in (
+                    (self.writers, starts[0], "publication"),
+                    (self.readers, starts[1], "subscription"),
+                )
+            ]
+            self._compose(m, Mux(subject.kind[0], told[1], told[0]), "NEXT")
         with m.State("KEPT SAMPLE"):
             m.next = "SAMPLE"
         with m.State("SAMPLE"):

@@ -116,7 +116,9 @@ def _number(value: int | Value, bits: int) -> Value:
 @dataclass(frozen=True)
 class Local:
     """A topic of ours as the tables have it: names of the wire, QoS, and for a writer the words of its longest message and
-    how many messages it keeps. The entity id of endpoint n has n + 1 in its third octet."""
+    how many messages it keeps. The entity id of endpoint n has n + 1 in its third octet.
+
+    `rooms`, where the names are known at run time only: the most octets of the topic's and of its type's, with their NUL."""
 
     topic: str
     type_name: str
@@ -125,6 +127,7 @@ class Local:
     words: int = 0
     depth: int = 1
     type_hash: str = ""
+    rooms: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
         if not 1 <= self.depth <= MAX_HISTORY or self.depth & (self.depth - 1):
@@ -146,8 +149,11 @@ class OwnMap:
     def __init__(self, writers: Sequence[Local], readers: Sequence[Local]) -> None:
         self.writers, self.readers = list(writers), list(readers)
         most = max(1, len(self.writers), len(self.readers))
-        texts = [text for local in (*self.writers, *self.readers) for text in (local.topic, local.type_name)]
-        longest = max((len(text.encode()) + 1 for text in texts), default=1)
+        rooms = [
+            local.rooms or [len(text.encode()) + 1 for text in (local.topic, local.type_name)]
+            for local in (*self.writers, *self.readers)
+        ]
+        longest = max((room for both in rooms for room in both), default=1)
         self.text_bits = _bits(1 + (longest + 3) // 4)
         self.local_bits = _bits(most)
         sizes = (OWN_WORDS, WRITER << self.local_bits, 1 << (self.text_bits + self.local_bits + 2))

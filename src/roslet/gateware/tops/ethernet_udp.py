@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from amaranth.hdl import ClockDomain, ClockSignal, DomainRenamer, Module
@@ -36,10 +37,25 @@ class EthernetUdp(wiring.Component):
     """
 
     def __init__(self, config: Config | None = None, phy: str = "mii", counters: bool = False) -> None:
-        self.config = config = Config() if config is None else config
+        self._build(Config() if config is None else config, phy, counters)
+
+    def _build(
+        self,
+        config: Config,
+        phy: str,
+        counters: bool,
+        groups: int = 0,
+        askers: int = 1,
+        blocks: Mapping[str, Any] | None = None,
+        more: Mapping[str, Any] | None = None,
+    ) -> None:
+        """`blocks` drop, too; `more` are ports of a larger node."""
+        self.config = config
         self._mac = Mac(phy, config.mac_rx_fifo_depth, config.mac_tx_fifo_depth)
         self._stack = UdpStack(
             config.ros2clk_hz,
+            groups,
+            askers,
             cache_width=config.arp_cache_addr_width,
             echo_data=config.max_ip_fragments * config.ip_max_payload_len - icmp.SIZE,
             pendings=config.max_pendings,
@@ -55,6 +71,7 @@ class EthernetUdp(wiring.Component):
                 ("stack", self._stack),
                 ("udp_rxbuf", self._rx),
                 ("udp_txbuf", self._tx),
+                *(blocks or {}).items(),
             )
             for name in block.signature.members
             if name.startswith("drop_")
@@ -88,6 +105,7 @@ class EthernetUdp(wiring.Component):
             "udp_txbuf_rel": In(1),
             "udp_txbuf_grant": Out(1),
             **{f"ip_payloadsmem_{name}": member for name, member in memory.items()},
+            **(more or {}),
         }
         if self._counters is not None:
             members["drop_reason"] = self._counters.signature.members["reason"]
@@ -150,11 +168,15 @@ class EthernetUdp(wiring.Component):
 
     def _user(self, m: Module) -> None:
         stack = self._stack
+        connect(m, stack.udp_rx, self._rx.i)
+        connect(m, self._tx.o, stack.udp_tx)
+        connect(m, self._tx.lookup, stack.lookup0)
+        self._memories(m)
+
+    def _memories(self, m: Module) -> None:
+        """The user's side of the two UDP memories."""
         m.submodules.rxbuf = rx = self._rx
         m.submodules.txbuf = tx = self._tx
-        connect(m, stack.udp_rx, rx.i)
-        connect(m, tx.o, stack.udp_tx)
-        connect(m, tx.lookup, stack.lookup0)
         m.d.comb += rx.port.eq(self.ros2_rx_udp_port)
         for block, prefix, names in (
             (rx, "udp_rxbuf_", ("addr", "ce", "we", "wdata", "rel", "grant")),
