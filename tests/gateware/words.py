@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from amaranth.hdl import Cat, Elaboratable, Module
+from amaranth.hdl import Cat, Elaboratable, Module, Signal
 from amaranth.lib import memory
 
 from gateware.frames import Bad, Bench
@@ -153,7 +153,9 @@ class Tables(Elaboratable):
             users = [getattr(one, name) for one in self._blocks.values() if name in one.signature.members]
             read = mem.read_port()
             m.d.comb += read.addr.eq(_either(user.addr for user in users))
-            m.d.comb += [user.data.eq(read.data) for user in users]
+            given = Signal(32, name=f"{name}_given")
+            m.d.sync += given.eq(read.data)
+            m.d.comb += [user.data.eq(given) for user in users]
         write = self.peers_memory.write_port()
         ports = [
             getattr(block, name)

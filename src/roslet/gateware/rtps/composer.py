@@ -7,7 +7,7 @@ from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.rtps.ports import READ_LATENCY, ReadSignature
-from roslet.gateware.rtps.rom import WORD_BITS, Op, Register, Rom
+from roslet.gateware.rtps.rom import REGISTER_BITS, WORD_BITS, Op, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 
 SUBJECT = data.StructLayout({"builtin": 1, "kind": 2, "slot": 8, "endpoint": 8, "entity": 8, "sample": 32, "words": 16})
@@ -18,7 +18,7 @@ it; where the message begins in our own memory, and how many words it has."""
 class Composer(wiring.Component):
     """Runs through the template that begins at `at`, from `start`, high for a cycle, on: one word a cycle, from 6 cycles later.
 
-    Ports: `subject`, steady until `done`, which is high in the cycle after the last word, or with it; `register`, in the same
+    Ports: `subject`, steady until `done`, which is high a cycle or two after the last word; `register`, in the same
     cycle, the value of the sender's that `which` names;
     `peers` and `own`, read ports; `push` with `word`, what is written. What takes the words must have room for all.
     """
@@ -29,7 +29,7 @@ class Composer(wiring.Component):
             {
                 "at": In(range(len(rom.words))),
                 "start": In(1),
-                "which": Out(Register),
+                "which": Out(REGISTER_BITS),
                 "register": In(32),
                 "subject": In(SUBJECT),
                 "peers": Out(ReadSignature(peers.address_bits)),

@@ -49,7 +49,8 @@ class DatagramQueue(wiring.Component):
         at = Signal(2)
         long = Signal()
         item = Signal(WORD)
-        room = words.w_level < self._depth - SPARE
+        count = Signal(range(self._depth))  # words of the datagram that are in the queue, or were
+        room = count != self._depth - SPARE
         whole = Signal()
         spare, spared = Signal(WORD.size), Signal()  # a word for which `o` was not ready
         m.d.comb += [
@@ -84,11 +85,11 @@ class DatagramQueue(wiring.Component):
                     i.ready.eq(1),
                     self.drop_long.eq(long & ~i.payload.bad),
                 ]
-                m.d.sync += [self.known.eq(1), self.good.eq(~bad), long.eq(0), last.eq(0)]
+                m.d.sync += [self.known.eq(1), self.good.eq(~bad), long.eq(0), last.eq(0), count.eq(0)]
         with m.Elif(i.valid):
             octet = i.payload.data
             m.d.comb += [i.ready.eq(1), item.data.eq(Cat(held, octet)), words.w_en.eq(whole & room & ~long)]
-            m.d.sync += at.eq(at + 1)
+            m.d.sync += [at.eq(at + 1), count.eq(count + (whole & room))]
             with m.Switch(at):
                 for n in range(3):
                     with m.Case(n):

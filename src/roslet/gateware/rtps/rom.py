@@ -36,7 +36,10 @@ class Op(enum.Enum, shape=4):
     END = 15
 
 
-class Register(enum.Enum, shape=4):
+REGISTER_BITS = 4
+
+
+class Register(enum.Enum, shape=REGISTER_BITS):
     """Values of the sender's."""
 
     FIRST = 0

@@ -12,7 +12,7 @@ from roslet.gateware.octets import pick
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.composer import SUBJECT
 from roslet.gateware.rtps.ports import READ_LATENCY, ReadSignature, WriteSignature
-from roslet.gateware.rtps.rom import Register, Rom
+from roslet.gateware.rtps.rom import REGISTER_BITS, Register, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 from roslet.gateware.rtps.turns import JOB, first
 from roslet.gateware.words import MessageSignature
@@ -67,7 +67,7 @@ class Sender(wiring.Component):
                 "template": Out(range(len(rom.words))),
                 "start": Out(1),
                 "done": In(1),
-                "which": In(Register),
+                "which": In(REGISTER_BITS),
                 "register": Out(32),
                 "subject": Out(SUBJECT),
                 "room": In(1),

@@ -98,20 +98,19 @@ class Submessages(wiring.Component):
         ]
 
         # What is known of this submessage
-        # Numbers are compared by the difference of their lower halves, so that nothing happens where these begin anew.
         sn, wanted = Signal(64), Signal(32)
         wanted_high = Signal(32)
-        ahead = Signal(32)
+        ahead = Signal(65)
         # The number is the one that is wanted, or before it; a cycle after either has changed
         same, behind = Signal(), Signal()
-        m.d.sync += [same.eq(ahead == 0), behind.eq(ahead[31])]
+        m.d.sync += [same.eq(ahead == 0), behind.eq(ahead[64])]
         known = Signal()  # what is wanted
         legal = Signal()  # as a number
         after, after_high = Signal(32), Signal(32)  # the number behind `sn`
         m.d.comb += Cat(after, after_high).eq(sn + 1)
         m.d.comb += [
-            ahead.eq(sn[:32] - wanted),
-            known.eq(wanted != 0),
+            ahead.eq(sn - Cat(wanted, wanted_high)),
+            known.eq((wanted != 0) | (wanted_high != 0)),
             legal.eq(~sn[63] & (sn != 0)),
         ]
         for_any = Signal()  # reader id unknown
@@ -373,9 +372,11 @@ class Submessages(wiring.Component):
                 m.d.sync += last_lo.eq(sn[:32])
                 with m.If(~known):
                     m.d.sync += [wanted.eq(after), wanted_high.eq(after_high)]
-                take("HEARD")
+                take("COUNTED")
                 with m.If(sn[63]):
                     m.next = "INVALID"
+            with m.State("COUNTED"):
+                m.next = "HEARD"
             with m.State("HEARD"):
                 missing = ~behind
                 with m.If(came | (ended & ~found)):
