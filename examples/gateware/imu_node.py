@@ -1,4 +1,5 @@
-"""An inertial measurement unit in gates: sensor_msgs/Imu on `imu`, 1,000 times a second, and geometry_msgs/Twist from `cmd_vel`.
+"""An inertial measurement unit in gates: sensor_msgs/Imu on `imu`, 1,000 times a second, and geometry_msgs/Twist from
+`cmd_vel`.
 
 The sensor is made up: its rates and accelerations count up, so that whoever receives them sees whether any is missing.
 

@@ -1,7 +1,8 @@
-"""The echo-back node of the mROS paper, in gates: what comes on `ping` goes out on `pong`. Its type is one of the user's own.
+"""The echo-back node of the mROS paper, in gates: what comes on `ping` goes out on `pong`. Its type is one of the user's
+own.
 
-    roslet gateware sim typed-echo
-    roslet gateware build typed-echo --target ecp5 --output out
+roslet gateware sim typed-echo
+roslet gateware build typed-echo --target ecp5 --output out
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""Drives blocks message by message: what `frames` does for octets, for streams of words (`roslet.gateware.words`); and the two
-memories that the RTPS blocks read and write, beside them.
+"""Drives blocks message by message: what `frames` does for octets, for streams of words (`roslet.gateware.words`); and the
+two memories that the RTPS blocks read and write, beside them.
 
 A message is `bytes`, or a `frames.Bad` one; octets that fill its last word up are sent at random, and not received.
 """
@@ -56,7 +56,7 @@ class WordBench(Bench):
                 )
                 until_known = self.random.randrange(2 * len(items))
 
-                def tell() -> None:
+                def tell(bad: bool = bad) -> None:
                     if known is not None:
                         ctx.set(good, not bad)
                         ctx.set(known, 1)

@@ -268,7 +268,11 @@ class PortSwitch(wiring.Component):
             o = getattr(self, f"o{n}")
             ports = [getattr(self, f"port{k}") for k, output in enumerate(self._outputs) if output == n]
             here = Cat(self.i.meta.destination_port == port for port in ports).any() & ~taken
-            m.d.comb += [o.stream.payload.eq(i.payload), o.meta.eq(self.i.meta), o.stream.valid.eq(i.valid & here)]
+            m.d.comb += [
+                o.stream.payload.eq(i.payload),
+                o.meta.eq(self.i.meta),
+                o.stream.valid.eq(i.valid & here),
+            ]
             with m.If(here):
                 m.d.comb += i.ready.eq(o.stream.ready)
             taken = taken | here

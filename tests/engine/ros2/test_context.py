@@ -5,13 +5,14 @@ import pytest
 from engine.ros2.members import HASH, RELIABLE, STRING, Member, run
 from engine.rtps.network import Network
 from roslet.engine.ros2 import context as contexts
-from roslet.engine.ros2 import discovery_info, graph
+from roslet.engine.ros2 import graph
 from roslet.engine.ros2.context import Context
-from roslet.engine.ros2.discovery_info import GID, OLD_GID, NodeEntities, ParticipantEntities
 from roslet.engine.ros2.graph import EndpointInfo, NodeInfo
 from roslet.engine.rtps import events
 from roslet.errors import InvalidName, NodeClosed
 from roslet.names import REPLY, REQUEST, dds_service_types, dds_topic, dds_type
+from roslet.wire import discovery_info
+from roslet.wire.discovery_info import GID, OLD_GID, NodeEntities, ParticipantEntities
 from roslet.wire.rtps import qos
 from roslet.wire.rtps.data import FLAG_D
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from roslet.engine.ros2 import discovery_info
-from roslet.engine.ros2.discovery_info import GID, OLD_GID, NodeEntities, ParticipantEntities, parse
 from roslet.errors import ProtocolError
+from roslet.wire import discovery_info
+from roslet.wire.discovery_info import GID, OLD_GID, NodeEntities, ParticipantEntities, parse
 
 pytestmark = pytest.mark.micropython
 

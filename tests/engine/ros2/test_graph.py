@@ -2,8 +2,8 @@
 
 import pytest
 
-from roslet.engine.ros2.discovery_info import NodeEntities, ParticipantEntities
 from roslet.engine.ros2.graph import Graph
+from roslet.wire.discovery_info import NodeEntities, ParticipantEntities
 from roslet.wire.rtps.endpoint_data import EndpointData
 from roslet.wire.rtps.guid import ENTITYID_PARTICIPANT
 from roslet.wire.rtps.participant_data import ParticipantData

@@ -1,4 +1,5 @@
-"""A node that counts: it publishes std_msgs/UInt32 on `count`, and shows what it receives on `shown`; on a simulated wire."""
+"""A node that counts: it publishes std_msgs/UInt32 on `count`, and shows what it receives on `shown`; on a simulated
+wire."""
 
 from __future__ import annotations
 
@@ -97,7 +98,9 @@ def compiled(clk_hz: float, rate: float, reliable: bool) -> tuple[pathlib.Path, 
 class Running:
     """The node on a wire, in whose seconds it counts."""
 
-    def __init__(self, rate: float = 10.0, reliable: bool = False, wire: Wire | None = None, link: Any = None) -> None:
+    def __init__(
+        self, rate: float = 10.0, reliable: bool = False, wire: Wire | None = None, link: Any = None
+    ) -> None:
         library, self.reasons = compiled(CLOCK / FACTOR, rate, reliable)
         self.model = Model(library)
         for name, hertz in (("clk", CLOCK), ("phy_rx_clk", PHY_CLOCK), ("phy_tx_clk", PHY_CLOCK)):

@@ -15,8 +15,16 @@ from roslet.gateware.rtps.tables import Local, OwnMap, PeerMap
 DROPS = ("full", "incomplete", "refused", "qos", "malformed")
 IP, MASK = "10.0.0.100", "255.255.255.0"
 DOMAIN = 5
-WRITERS = [Local("rt/out", "T1"), Local("rt/sure", "T2", reliable=True), Local("rt/latched", "T3", True, True)]
-READERS = [Local("rt/in", "pkg::T_"), Local("rt/strict", "T5", reliable=True), Local("rt/kept", "T6", True, True)]
+WRITERS = [
+    Local("rt/out", "T1"),
+    Local("rt/sure", "T2", reliable=True),
+    Local("rt/latched", "T3", True, True),
+]
+READERS = [
+    Local("rt/in", "pkg::T_"),
+    Local("rt/strict", "T5", reliable=True),
+    Local("rt/kept", "T6", True, True),
+]
 
 
 def prefix(n: int) -> bytes:
@@ -107,7 +115,7 @@ class Node:
 
     def kept(self) -> list[int]:
         """All but the scratch area."""
-        memory = self.bench.dut.peek(self.ctx)
+        memory: list[int] = self.bench.dut.peek(self.ctx)
         return memory[: self.peers._scratch] + memory[self.peers._scratch + 16 :]
 
     # -- what is said
@@ -128,7 +136,13 @@ class Node:
         for at, octets_ in ((9, sender), (12, key)):
             for n, word in enumerate(words(octets_)):
                 ctx.set(scratch[self.peers._scratch + at + n], word)
-        meta = {"kind": kind, "known": slot is not None, "slot": slot or 0, "gone": gone, "has_key": bool(key)}
+        meta = {
+            "kind": kind,
+            "known": slot is not None,
+            "slot": slot or 0,
+            "gone": gone,
+            "has_key": bool(key),
+        }
         ctx.set(i.meta, meta)
         bad = isinstance(octets, Bad)
         pad = 0 if bad else -len(octets) % 4
@@ -159,7 +173,9 @@ class Node:
 
     async def tell(self, octets: bytes, slot: int = 0, n: int = 1, **more: Any) -> Came:
         """Participant `n`, which has this slot, says this of an endpoint."""
-        writer = octets[8 + 15] in (2, 3) if more.get("kind") is None else more.pop("kind") == ports.PUBLICATIONS
+        writer = (
+            octets[8 + 15] in (2, 3) if more.get("kind") is None else more.pop("kind") == ports.PUBLICATIONS
+        )
         kind = ports.PUBLICATIONS if writer else ports.SUBSCRIPTIONS
         return await self.say(kind, octets, prefix(n), slot, **more)
 

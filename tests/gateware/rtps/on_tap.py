@@ -1,7 +1,7 @@
 """The counting node on a TAP device, in the time of the wall clock: on_tap.py SECONDS [pcap FILE].
 
-Prints one JSON line each time something changed: the participants and endpoints it knows, how many messages it received and the
-last of them, what it dropped.
+Prints one JSON line each time something changed: the participants and endpoints it knows, how many messages it received and
+the last of them, what it dropped.
 """
 
 from __future__ import annotations

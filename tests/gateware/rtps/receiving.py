@@ -82,7 +82,9 @@ class Receiver:
     def endpoint(self, number: int, word: int) -> int:
         return self.peers._endpoints + 8 * number + word
 
-    def writer(self, number: int, key: bytes, wanted: int = 0, slot: int = 0, local: int = 0, reliable: bool = True) -> None:
+    def writer(
+        self, number: int, key: bytes, wanted: int = 0, slot: int = 0, local: int = 0, reliable: bool = True
+    ) -> None:
         """Endpoint `number` is a writer of a peer, of which `wanted` is wanted next."""
         self._proxy(number, key, slot, local, True, reliable)
         self.put(self.endpoint(number, NEXT_LO), wanted & 0xFFFFFFFF)
@@ -104,7 +106,7 @@ class Receiver:
 
     def kept(self) -> list[int]:
         """All but the scratch area."""
-        memory = self.bench.dut.peek(self.ctx)
+        memory: list[int] = self.bench.dut.peek(self.ctx)
         return memory[: self.peers._scratch] + memory[self.peers._scratch + 16 :]
 
     # -- what is said

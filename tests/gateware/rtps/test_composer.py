@@ -25,7 +25,10 @@ PREFIX, THEIRS = b"\1\x52" + bytes(range(10)), bytes(range(0x30, 0x3C))
 IP = bytes((192, 168, 1, 100))
 KEY = b"\0\0\x21\4"
 HASH = "RIHS01_" + "5a" * 32
-WRITERS = [Local("rt/a", "pkg::msg::dds_::A_", words=5, type_hash=HASH), Local("rt/bcd", "B", True, True, words=3, depth=4)]
+WRITERS = [
+    Local("rt/a", "pkg::msg::dds_::A_", words=5, type_hash=HASH),
+    Local("rt/bcd", "B", True, True, words=3, depth=4),
+]
 READERS = [Local("rt/longer_name", "C", reliable=True)]
 FIRST, LAST, NUMBER, COUNT, BITMAP = (7 << 32) + 0xFFFFFFFE, (8 << 32) + 5, (7 << 32) + 1, 77, 0xA0000001
 WANTED = (3 << 32) + 9
@@ -119,7 +122,9 @@ def test_there_is_a_template_for_all_that_a_node_says() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_declared_lengths_are_emitted_lengths_and_a_word_comes_each_cycle(composed: dict[str, Composed], name: str) -> None:
+def test_declared_lengths_are_emitted_lengths_and_a_word_comes_each_cycle(
+    composed: dict[str, Composed], name: str
+) -> None:
     """The walk of the codec ends where the octets do: no length says less or more, and none of zero hides it."""
     one = composed[name]
     at = 20
@@ -128,7 +133,10 @@ def test_declared_lengths_are_emitted_lengths_and_a_word_comes_each_cycle(compos
         assert length > 0 and length % 4 == 0
         at += 4 + length
     assert at == len(one.octets)
-    has_message = any(rom.words[n] >> 32 == Op.MESSAGE.value for n in range(rom.start[name], rom.start[name] + rom.size[name]))
+    has_message = any(
+        rom.words[n] >> 32 == Op.MESSAGE.value
+        for n in range(rom.start[name], rom.start[name] + rom.size[name])
+    )
     count = len(one.octets) // 4
     # `size` counts the place of the message as a word.
     assert count == rom.size[name] + (3 - 1 if has_message else 0)
@@ -140,7 +148,11 @@ def test_declared_lengths_are_emitted_lengths_and_a_word_comes_each_cycle(compos
 
 def test_the_announcement_says_who_and_where_we_are(composed: dict[str, Composed]) -> None:
     (data,) = read(composed["participant"].octets)
-    assert (data.writer_id, data.sequence, data.flags) == (guid.ENTITYID_SPDP_BUILTIN_PARTICIPANT_WRITER, NUMBER, FLAG_D)
+    assert (data.writer_id, data.sequence, data.flags) == (
+        guid.ENTITYID_SPDP_BUILTIN_PARTICIPANT_WRITER,
+        NUMBER,
+        FLAG_D,
+    )
     said = participant_data.parse(data.payload)
     assert said.guid == PREFIX + guid.ENTITYID_PARTICIPANT
     assert (said.domain_id, said.lease, said.builtin_endpoints) == (42, 20 * 10**9, 0x3F)
@@ -199,7 +211,9 @@ def test_heartbeats_acknacks_and_gaps_have_their_numbers(composed: dict[str, Com
 
 
 @pytest.mark.parametrize(("kind", "name"), [(2, "publication"), (3, "subscription")])
-def test_discovery_is_acknowledged_by_its_own_readers_and_told_by_its_own_writers(kind: int, name: str) -> None:
+def test_discovery_is_acknowledged_by_its_own_readers_and_told_by_its_own_writers(
+    kind: int, name: str
+) -> None:
     which = f"ENTITYID_SEDP_BUILTIN_{name.upper()}S"
     reader, writer = getattr(guid, f"{which}_READER"), getattr(guid, f"{which}_WRITER")
     both = compose([f"{name}_acknack", f"{name}_heartbeat"], builtin=True, kind=kind)

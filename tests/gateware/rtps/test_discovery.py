@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-from typing import Any
 
 import pytest
 
@@ -27,7 +26,12 @@ def durability(kind: int, e: str = "<") -> bytes:
 
 
 def endpoint(
-    entity: bytes = W, topic: str = "rt/in", type_name: str = "pkg::T_", n: int = 1, e: str = "<", *more: bytes
+    entity: bytes = W,
+    topic: str = "rt/in",
+    type_name: str = "pkg::T_",
+    n: int = 1,
+    e: str = "<",
+    *more: bytes,
 ) -> bytes:
     """Best effort, as it is the least that a writer offers and a reader asks for... of which `more` may say more."""
     return hand.payload(
@@ -50,7 +54,12 @@ def test_a_participant_is_kept_as_it_announces_itself_and_greeted(e: str, stalls
         assert came == ([], [0, 1, 2, 3], [0], 0b01, 0)
         *guid, meta_ip, meta_port, user_ip, user_port, lease, left = node.participant(0)
         assert guid == words(prefix(1))
-        assert (meta_ip, meta_port, user_ip, user_port) == (address("10.0.0.7"), 7410, address("10.0.0.7"), 7411)
+        assert (meta_ip, meta_port, user_ip, user_port) == (
+            address("10.0.0.7"),
+            7410,
+            address("10.0.0.7"),
+            7411,
+        )
         assert lease == left and 20 <= left <= 22
         # From its writers all is wanted, and its readers have been sent nothing yet and get everything.
         for kind in (2, 3):
@@ -133,12 +142,22 @@ def test_who_is_silent_for_its_lease_is_gone_and_who_is_heard_stays() -> None:
 
 def test_leases_of_all_lengths() -> None:
     async def script(node: Node) -> None:
-        for seconds, kept in ((0, 0), (1, 1), (0xFFFE, 0xFFFE), (0xFFFF, 0xFFFF), (0x10000, 0xFFFF), (0x7FFFFFFF, 0xFFFF)):
+        for seconds, kept in (
+            (0, 0),
+            (1, 1),
+            (0xFFFE, 0xFFFE),
+            (0xFFFF, 0xFFFF),
+            (0x10000, 0xFFFF),
+            (0x7FFFFFFF, 0xFFFF),
+        ):
             slot = 0 if node.ctx.get(node.block.alive) else None
             await node.arrive(1, slot, hand.parameter(0x02, struct.pack("<iI", seconds, 0xFFFFFFFF)))
             assert node.participant(0)[7] == kept + 1
         # None said: 100 s (9.6.2.2.2).
-        said = hand.payload(hand.parameter(0x50, prefix(1) + hand.PARTICIPANT), hand.parameter(0x32, hand.locator("10.0.0.1", 1)))
+        said = hand.payload(
+            hand.parameter(0x50, prefix(1) + hand.PARTICIPANT),
+            hand.parameter(0x32, hand.locator("10.0.0.1", 1)),
+        )
         await node.say(PARTICIPANT, said, prefix(1), 0)
         assert node.participant(0)[7] == 101
 
@@ -189,7 +208,10 @@ def test_who_is_of_another_domain_or_must_be_understood_is_refused(more: bytes, 
 
 
 def test_a_participant_without_guid_or_locator_is_incomplete_and_one_of_another_guid_malformed() -> None:
-    guid, here = hand.parameter(0x50, prefix(1) + hand.PARTICIPANT), hand.parameter(0x32, hand.locator("10.0.0.1", 7410))
+    guid, here = (
+        hand.parameter(0x50, prefix(1) + hand.PARTICIPANT),
+        hand.parameter(0x32, hand.locator("10.0.0.1", 7410)),
+    )
 
     async def script(node: Node) -> None:
         for said in (hand.payload(guid), hand.payload(here), hand.payload()):
@@ -222,9 +244,16 @@ def test_endpoints_that_match_get_a_proxy(e: str, stalls: int) -> None:
         assert came == ([], [9], [], 1, 0b011)
         key, info, ip, port, acked, ask_from, ask_to, start = node.endpoint(1)
         assert (key, info, ip, port) == (words(R)[0], 1 << 8 | 1 << 17, address("10.0.0.9"), 1234)
-        assert (acked, ask_from, ask_to, start) == (1, 1, 0, 1)  # nothing was written yet, and nothing is asked for
+        assert (acked, ask_from, ask_to, start) == (
+            1,
+            1,
+            0,
+            1,
+        )  # nothing was written yet, and nothing is asked for
         # Transient-local both: what was written before is for it, all that is kept.
-        came = await node.tell(endpoint(b"\0\0\3\4", "rt/latched", "T3", 1, e, reliability(2, e), durability(1, e)))
+        came = await node.tell(
+            endpoint(b"\0\0\3\4", "rt/latched", "T3", 1, e, reliability(2, e), durability(1, e))
+        )
         assert came.matched == 0b111 and node.endpoint(2)[1] == 2 << 8 | 1 << 17
         assert (0 - node.endpoint(2)[7]) & 0xFFFFFFFF == 1 << 15  # MAX_HISTORY before the last
         # Said again, it moves only.
@@ -273,7 +302,9 @@ def test_an_endpoint_that_agrees_no_more_goes() -> None:
         assert (await node.tell(endpoint())).matched == 1
         assert await node.tell(endpoint(topic="rt/other")) == ([], [], [], 1, 0)
         assert (await node.tell(endpoint())).matched == 1
-        assert await node.tell(endpoint(W, "rt/in", "pkg::T_", 1, "<", hand.parameter(0x1F, b"\1\0\0\0"))) == (["qos"], [], [], 1, 0)
+        assert await node.tell(
+            endpoint(W, "rt/in", "pkg::T_", 1, "<", hand.parameter(0x1F, b"\1\0\0\0"))
+        ) == (["qos"], [], [], 1, 0)
 
     Node().run(script)
 
@@ -401,7 +432,14 @@ QOS: list[tuple[str, bytes, bool]] = [
     ("out", shorts(2, 0), True),
     ("out", shorts(0, 2), True),
     # what makes no difference
-    ("in", policy(0x40, 1, 0) + policy(0x41, 1, 2, 3) + hand.parameter(0x2C, b"\4\0\0\0user") + policy(0x27, 5, 0), True),
+    (
+        "in",
+        policy(0x40, 1, 0)
+        + policy(0x41, 1, 2, 3)
+        + hand.parameter(0x2C, b"\4\0\0\0user")
+        + policy(0x27, 5, 0),
+        True,
+    ),
     ("out", policy(0x40, 1, 0) + hand.parameter(0x04, SECOND) + hand.parameter(0x2B, SECOND), True),
     ("in", hand.parameter(0x4099, bytes(4)), False),  # must be understood
     ("in", hand.parameter(0xC099, bytes(4)), True),

@@ -1,4 +1,5 @@
-"""Composed datagrams leave whole and in order, with their length and sum; who does not answer to ARP keeps nobody waiting."""
+"""Composed datagrams leave whole and in order, with their length and sum; who does not answer to ARP keeps nobody
+waiting."""
 
 from __future__ import annotations
 

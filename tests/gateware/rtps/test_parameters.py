@@ -93,8 +93,8 @@ class Reader:
             ctx.set(self.block.proceed, 0)
             ctx.set(i.stream.valid, 0)
         await ctx.tick()
-        found = heard or (None, 0, [])
-        return Heard(*found, self._malformed - before)
+        read, same, scratch = heard or (None, 0, [])
+        return Heard(read, same, scratch, self._malformed - before)
 
 
 NEITHER = Heard(None, 0, [], 0)
@@ -122,8 +122,8 @@ def test_a_topic_and_a_type_that_are_ours_are_known(e: str, stalls: int) -> None
                 heard = await r.hear(hand.payload(*order, e=e))
                 assert heard.same & 0b111 == same, (topic, type_name)
                 assert (heard.read.topic, heard.read.type, heard.malformed) == (1, 1, 0)
-        heard = await r.hear(hand.payload(hand.parameter(5, hand.text("w", e), e), hand.parameter(7, hand.text("x", e), e), e=e),
-                             SUBSCRIPTION)  # fmt: skip
+        texts = hand.parameter(5, hand.text("w", e), e), hand.parameter(7, hand.text("x", e), e)
+        heard = await r.hear(hand.payload(*texts, e=e), SUBSCRIPTION)
         assert heard.same & 1 == 1
 
     Reader(stalls).run(script)
@@ -153,7 +153,12 @@ def test_texts_that_differ_anywhere_are_not_ours() -> None:
         for one in right:
             assert (await r.hear(hand.payload(hand.parameter(5, one), TYPE))).same & 0b111 == 0b001, one
         # Of the seven octets of the other one: no octet is left to fill the word up.
-        for one, same in ((text(8, b"rt/abcd\0"), 2), (text(8, b"rt/abce\0"), 0), (text(8, b"rt/abcd\1"), 0), (text(7, b"rt/abcd\0"), 0)):
+        for one, same in (
+            (text(8, b"rt/abcd\0"), 2),
+            (text(8, b"rt/abce\0"), 0),
+            (text(8, b"rt/abcd\1"), 0),
+            (text(7, b"rt/abcd\0"), 0),
+        ):
             assert (await r.hear(hand.payload(hand.parameter(5, one), TYPE))).same & 0b111 == same, one
 
     Reader().run(script)
@@ -182,9 +187,16 @@ FAR, NEAR, NEAR2 = "192.168.7.7", "10.0.0.5", "10.0.0.6"
 @pytest.mark.parametrize("e", "<>")
 @pytest.mark.parametrize(
     ("kind", "pid", "at", "flag"),
-    [(PARTICIPANT, 0x32, 3, "meta"), (PARTICIPANT, 0x31, 5, "user"), (PUBLICATION, 0x2F, 5, "user"), (SUBSCRIPTION, 0x2F, 5, "user")],
+    [
+        (PARTICIPANT, 0x32, 3, "meta"),
+        (PARTICIPANT, 0x31, 5, "user"),
+        (PUBLICATION, 0x2F, 5, "user"),
+        (SUBSCRIPTION, 0x2F, 5, "user"),
+    ],
 )
-def test_of_locators_the_first_in_our_subnet_is_taken_else_the_first(kind: int, pid: int, at: int, flag: str, e: str) -> None:
+def test_of_locators_the_first_in_our_subnet_is_taken_else_the_first(
+    kind: int, pid: int, at: int, flag: str, e: str
+) -> None:
     cases: list[tuple[list[bytes], tuple[str, int] | None]] = [
         ([locator(NEAR, e=e)], (NEAR, 7411)),
         ([locator(FAR, 9, e=e)], (FAR, 9)),
@@ -192,7 +204,10 @@ def test_of_locators_the_first_in_our_subnet_is_taken_else_the_first(kind: int, 
         ([locator(NEAR, 10, e=e), locator(FAR, 9, e=e)], (NEAR, 10)),
         ([locator(NEAR, 10, e=e), locator(NEAR2, 9, e=e)], (NEAR, 10)),
         ([locator(FAR, 10, e=e), locator("1.2.3.4", 9, e=e)], (FAR, 10)),
-        ([locator(FAR, 1, e=e), locator(NEAR, 2, e=e), locator(NEAR2, 3, e=e), locator(FAR, 4, e=e)], (NEAR, 2)),
+        (
+            [locator(FAR, 1, e=e), locator(NEAR, 2, e=e), locator(NEAR2, 3, e=e), locator(FAR, 4, e=e)],
+            (NEAR, 2),
+        ),
         ([locator("127.0.0.1", e=e)], None),
         ([locator("127.0.0.1", e=e), locator(FAR, 8, e=e)], (FAR, 8)),
         ([locator("0.0.0.0", e=e)], None),
@@ -220,7 +235,9 @@ def test_what_is_said_is_read_and_what_is_not_has_its_default(e: str) -> None:
         heard = await r.hear(hand.payload(e=e), PARTICIPANT)
         assert (heard.read.guid, heard.read.meta, heard.read.lease, heard.read.refused) == (0, 0, 100, 0)
         said = hand.payload(
-            hand.parameter(0x50, SENDER + hand.PARTICIPANT, e), hand.parameter(2, struct.pack(e + "iI", 7, 1 << 31), e), e=e
+            hand.parameter(0x50, SENDER + hand.PARTICIPANT, e),
+            hand.parameter(2, struct.pack(e + "iI", 7, 1 << 31), e),
+            e=e,
         )
         heard = await r.hear(said, PARTICIPANT)
         assert (heard.read.guid, heard.read.lease) == (1, 7)
@@ -229,10 +246,14 @@ def test_what_is_said_is_read_and_what_is_not_has_its_default(e: str) -> None:
             heard = await r.hear(hand.payload(e=e), kind)
             assert (heard.read.reliable, heard.read.durability, heard.read.topic) == (reliable, 0, 0)
             for value in (1, 2):
-                heard = await r.hear(hand.payload(hand.parameter(0x1A, struct.pack(e + "IiI", value, 0, 0), e), e=e), kind)
+                heard = await r.hear(
+                    hand.payload(hand.parameter(0x1A, struct.pack(e + "IiI", value, 0, 0), e), e=e), kind
+                )
                 assert heard.read.reliable == value - 1
             for value in range(4):
-                heard = await r.hear(hand.payload(hand.parameter(0x1D, struct.pack(e + "I", value), e), e=e), kind)
+                heard = await r.hear(
+                    hand.payload(hand.parameter(0x1D, struct.pack(e + "I", value), e), e=e), kind
+                )
                 assert heard.read.durability == value
         heard = await r.hear(hand.payload(hand.parameter(0x5A, SENDER + hand.WRITER, e), e=e))
         assert (heard.read.guid, heard.read.entity) == (1, words(hand.WRITER)[0])
@@ -244,9 +265,13 @@ def test_what_is_said_is_read_and_what_is_not_has_its_default(e: str) -> None:
 
 def test_parameters_of_the_other_kind_say_nothing() -> None:
     async def script(r: Reader) -> None:
-        heard = await r.hear(hand.payload(hand.parameter(0x50, SENDER + hand.PARTICIPANT), hand.parameter(0x32, locator())))
+        heard = await r.hear(
+            hand.payload(hand.parameter(0x50, SENDER + hand.PARTICIPANT), hand.parameter(0x32, locator()))
+        )
         assert (heard.read.guid, heard.read.meta, heard.read.user) == (0, 0, 0)
-        heard = await r.hear(hand.payload(hand.parameter(0x5A, SENDER + hand.WRITER), TOPIC, TYPE), PARTICIPANT)
+        heard = await r.hear(
+            hand.payload(hand.parameter(0x5A, SENDER + hand.WRITER), TOPIC, TYPE), PARTICIPANT
+        )
         assert (heard.read.guid, heard.read.topic, heard.read.type) == (0, 0, 0)
 
     Reader().run(script)
@@ -254,10 +279,18 @@ def test_parameters_of_the_other_kind_say_nothing() -> None:
 
 def test_what_is_no_parameter_list_is_malformed() -> None:
     good = hand.payload(TOPIC, TYPE)
-    cases = [bytes([a, b]) + good[2:] for a, b in ((0, 0), (0, 1), (0, 4), (0, 6), (0, 10), (1, 3), (0x80, 2), (0, 0x13))]
-    cases += [hand.payload(struct.pack("<HH", 0x2C, length) + bytes(4)) for length in (1, 2, 3, 5, 0x7FFF, 0xFFFF)]
+    cases = [
+        bytes([a, b]) + good[2:]
+        for a, b in ((0, 0), (0, 1), (0, 4), (0, 6), (0, 10), (1, 3), (0x80, 2), (0, 0x13))
+    ]
+    cases += [
+        hand.payload(struct.pack("<HH", 0x2C, length) + bytes(4)) for length in (1, 2, 3, 5, 0x7FFF, 0xFFFF)
+    ]
     cases += [good[:cut] for cut in range(4, len(good) - 3, 4)]  # no sentinel, or cut in a value
-    cases += [hand.payload(struct.pack("<HH", 0x8000, 0xFFFC)), good[:-4] + struct.pack("<HH", 5, 64) + bytes(60)]
+    cases += [
+        hand.payload(struct.pack("<HH", 0x8000, 0xFFFC)),
+        good[:-4] + struct.pack("<HH", 5, 64) + bytes(60),
+    ]
     wrong = [SENDER[:n] + bytes([SENDER[n] ^ 4]) + SENDER[n + 1 :] for n in range(12)]
     cases += [hand.payload(hand.parameter(0x5A, one + hand.WRITER)) for one in wrong]
 
@@ -273,14 +306,18 @@ def test_what_is_no_parameter_list_is_malformed() -> None:
 def test_after_the_sentinel_nothing_is_read() -> None:
     async def script(r: Reader) -> None:
         for sentinel in (b"\1\0\0\0", b"\1\0\x08\0"):
-            heard = await r.hear(b"\0\3\0\0" + TOPIC + TYPE + sentinel + hand.parameter(5, hand.text("rt/abcd")) + b"\xff" * 8)
+            heard = await r.hear(
+                b"\0\3\0\0" + TOPIC + TYPE + sentinel + hand.parameter(5, hand.text("rt/abcd")) + b"\xff" * 8
+            )
             assert heard.same & 0b111 == 1 and not heard.malformed
 
     Reader().run(script)
 
 
 def test_a_list_cut_at_every_octet_is_done_or_malformed_and_the_next_is_read() -> None:
-    good = hand.payload(hand.parameter(0x5A, SENDER + hand.WRITER), hand.parameter(0x2F, locator()), TOPIC, TYPE)
+    good = hand.payload(
+        hand.parameter(0x5A, SENDER + hand.WRITER), hand.parameter(0x2F, locator()), TOPIC, TYPE
+    )
 
     async def script(r: Reader) -> None:
         for cut in range(1, len(good) + 1):

@@ -27,7 +27,7 @@ HERE = pathlib.Path(__file__).parent
 SECONDS = 240
 """How long a simulation may live; it is ended before."""
 PATIENCE = 40.0
-PROGRAMS = {"kilted": "peer_rclpy.py", "jazzy": "peer_rclpy.py", "cyclone": "peer_cyclone.py"}
+PROGRAMS = {"kilted": "gates_rclpy.py", "jazzy": "gates_rclpy.py", "cyclone": "gates_cyclone.py"}
 
 
 class Gates:
@@ -50,14 +50,20 @@ class Gates:
 
     def peer(self, kind: str, name: str, seconds: float = 120.0) -> Program:
         return self.namespace.start(
-            str(peers.require(kind)), str(HERE / PROGRAMS[kind]), name, str(seconds), name=f"{kind}-{name}",
+            str(peers.require(kind)),
+            str(peers.ROOT / "tests/interop/peers" / PROGRAMS[kind]),
+            name,
+            str(seconds),
+            name=f"{kind}-{name}",
             FASTDDS_BUILTIN_TRANSPORTS="DEFAULT",
         )
 
     def status(self) -> dict[str, Any]:
         return last(self.program)
 
-    def wait(self, what: str, seen: Callable[[dict[str, Any]], bool], seconds: float = PATIENCE) -> dict[str, Any]:
+    def wait(
+        self, what: str, seen: Callable[[dict[str, Any]], bool], seconds: float = PATIENCE
+    ) -> dict[str, Any]:
         return wait(self.program, what, seen, seconds)
 
 
@@ -114,7 +120,9 @@ def test_messages_pass_both_ways(alone: Gates, kind: str) -> None:
 @pytest.mark.parametrize("kind", ["kilted", "jazzy"])
 def test_the_node_is_in_the_graph_with_its_endpoints_and_their_types(alone: Gates, kind: str) -> None:
     peer = alone.peer(kind, "watcher")
-    said = wait(peer, "the node", lambda said: "counter" in said["nodes"] and said["publishers"] == ["counter"], 60)
+    said = wait(
+        peer, "the node", lambda said: "counter" in said["nodes"] and said["publishers"] == ["counter"], 60
+    )
     # std_msgs/msg/UInt32, as every distribution since Iron has it
     assert said["hashes"] == [expected_hash()]
     end(peer)
@@ -138,7 +146,9 @@ def expected_hash() -> str:
 
 
 def test_several_peers_of_all_kinds_at_once(alone: Gates) -> None:
-    programs = [alone.peer(kind, f"{kind}{n}") for n in range(2) for kind in ("kilted", "jazzy", "cyclone")][:5]
+    programs = [alone.peer(kind, f"{kind}{n}") for n in range(2) for kind in ("kilted", "jazzy", "cyclone")][
+        :5
+    ]
     for program in programs:
         wait(program, "ten messages", lambda said: len(said["got"]) >= 10, 90)
     alone.wait("all of them", lambda said: said["alive"] >= 5 and said["matched"] >= 10)
@@ -156,9 +166,27 @@ def test_a_killed_peer_expires(alone: Gates) -> None:
 def test_what_the_node_sent_is_well_formed(alone: Gates) -> None:
     alone.program.process.send_signal(signal.SIGSTOP)
     try:
-        fields = ["-T", "fields", "-E", "separator=|", "-e", "_ws.malformed", "-e", "_ws.expert.message", "-e", "ip.src"]
+        fields = [
+            "-T",
+            "fields",
+            "-E",
+            "separator=|",
+            "-e",
+            "_ws.malformed",
+            "-e",
+            "_ws.expert.message",
+            "-e",
+            "ip.src",
+        ]
         done = subprocess.run(
-            [str(peers.require("tshark")), "-r", str(alone.capture), "-o", "udp.check_checksum:TRUE", *fields],
+            [
+                str(peers.require("tshark")),
+                "-r",
+                str(alone.capture),
+                "-o",
+                "udp.check_checksum:TRUE",
+                *fields,
+            ],
             capture_output=True,
             text=True,
             timeout=120,

@@ -69,14 +69,21 @@ def test_the_one_with_this_key_of_this_participant_and_of_this_kind_is_found_if_
     for n, (key, slot, writer, local) in enumerate(table):
         theirs[peers._endpoints + 8 * n] = key
         theirs[peers._endpoints + 8 * n + 1] = slot | local << 8 | writer << 16
-    bench = WordBench(Tables(peers, own, own.init(bytes(12), bytes(4), 0, 0), theirs=theirs, finder=Finder(peers)))
+    bench = WordBench(
+        Tables(peers, own, own.init(bytes(12), bytes(4), 0, 0), theirs=theirs, finder=Finder(peers))
+    )
     dut = bench.dut.finder
 
     async def ask(ctx: Any) -> None:
         for _ in range(60):
             key, slot, writer = random_.randrange(1, 4), random_.randrange(2), random_.randrange(2)
             matched = random_.getrandbits(many)
-            for port, value in ((dut.key, key), (dut.slot, slot), (dut.writer, writer), (dut.matched, matched)):
+            for port, value in (
+                (dut.key, key),
+                (dut.slot, slot),
+                (dut.writer, writer),
+                (dut.matched, matched),
+            ):
                 ctx.set(port, value)
             ctx.set(dut.start, 1)
             await ctx.tick()
@@ -85,9 +92,7 @@ def test_the_one_with_this_key_of_this_participant_and_of_this_kind_is_found_if_
             while not ctx.get(dut.over):
                 await ctx.tick()
                 cycles += 1
-            right = [
-                n for n, one in enumerate(table) if one[:3] == (key, slot, writer) and matched >> n & 1
-            ]
+            right = [n for n, one in enumerate(table) if one[:3] == (key, slot, writer) and matched >> n & 1]
             equal = [n for n, one in enumerate(table) if one[0] == key and matched >> n & 1]
             assert ctx.get(dut.found) == bool(right)
             if right:

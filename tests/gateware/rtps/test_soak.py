@@ -1,4 +1,5 @@
-"""The receiving side as a whole: a session of the software engine, and then what seeded mutations make of it. Never stuck."""
+"""The receiving side as a whole: a session of the software engine, and then what seeded mutations make of it. Never
+stuck."""
 
 from __future__ import annotations
 
@@ -68,7 +69,9 @@ class Receiving(Tables):
 
     def __init__(self) -> None:
         self.peer_map = peers = PeerMap(2, 3)
-        own = OwnMap([Local("rt/out", "T1", reliable=True, words=2)], [Local("rt/in", "pkg::T_", reliable=True)])
+        own = OwnMap(
+            [Local("rt/out", "T1", reliable=True, words=2)], [Local("rt/in", "pkg::T_", reliable=True)]
+        )
         self.queue: Any = DatagramQueue(LONGEST)
         self.walker: Any = Walker(peers, own)
         self.submessages: Any = Submessages(peers, own)
@@ -142,7 +145,10 @@ class Node:
         """A datagram, until it has been dealt with; an octet a cycle."""
         ctx, stream = self.ctx, self.dut.queue.i.stream
         bad = isinstance(datagram, Bad)
-        for item in [*({"data": octet, "end": 0, "bad": 0} for octet in datagram), {"data": 0, "end": 1, "bad": bad}]:
+        for item in [
+            *({"data": octet, "end": 0, "bad": 0} for octet in datagram),
+            {"data": 0, "end": 1, "bad": bad},
+        ]:
             ctx.set(stream.payload, item)
             ctx.set(stream.valid, 1)
             ready = 0
@@ -205,7 +211,9 @@ def mutated(random_: random.Random, sent: list[bytes]) -> bytes:
         if not datagram:
             break
         if kind < 3:
-            datagram[at] = random_.choice([0, 1, 0x80, 0xFF, datagram[at] ^ 1 << random_.randrange(8), random_.randrange(256)])
+            datagram[at] = random_.choice(
+                [0, 1, 0x80, 0xFF, datagram[at] ^ 1 << random_.randrange(8), random_.randrange(256)]
+            )
         elif kind == 3:
             del datagram[at:]
         elif kind == 4:
@@ -213,7 +221,9 @@ def mutated(random_: random.Random, sent: list[bytes]) -> bytes:
         elif kind == 5:
             datagram += random_.choice(sent)[20:]
         elif kind == 6:
-            datagram[at & ~3 : (at & ~3) + 4] = random_.choice([bytes(4), b"\xff" * 4, b"\1\0\0\0", b"\0\0\0\1", b"\x15\5\0\0"])
+            datagram[at & ~3 : (at & ~3) + 4] = random_.choice(
+                [bytes(4), b"\xff" * 4, b"\1\0\0\0", b"\0\0\0\1", b"\x15\5\0\0"]
+            )
         else:
             del datagram[at & ~3 : (at & ~3) + 4]
     found = bytes(datagram[: random_.choice([LONGEST, LONGEST + 40])])
@@ -237,7 +247,9 @@ def test_a_session_of_the_engine_is_understood_from_arrival_to_departure() -> No
     one = Node(0)
     one.run(script, 400_000)
     quiet = {name: count for name, count in one.bench.counts.items() if count}
-    assert set(quiet) <= {"submessages.drop_unmatched", "submessages.drop_old", "submessages.drop_early"}, quiet
+    assert set(quiet) <= {"submessages.drop_unmatched", "submessages.drop_old", "submessages.drop_early"}, (
+        quiet
+    )
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -260,7 +272,8 @@ def test_after_hostile_datagrams_every_good_one_is_still_handled(seed: int) -> N
 
 
 def test_recorded_sessions_of_other_makers_are_walked_without_a_fault() -> None:
-    """Fast DDS, of two distributions, and Cyclone DDS, as they spoke to each other: nothing is malformed, nobody is stuck."""
+    """Fast DDS, of two distributions, and Cyclone DDS, as they spoke to each other: nothing is malformed, nobody is
+    stuck."""
 
     async def script(node: Node) -> None:
         for name in ("fastdds_cyclone_topic", "jazzy_topic"):
@@ -271,5 +284,11 @@ def test_recorded_sessions_of_other_makers_are_walked_without_a_fault() -> None:
 
     one = Node(3)
     one.run(script, 1_000_000)
-    for name in ("walker.drop_truncated", "walker.drop_not_rtps", "walker.drop_version", "discovery.drop_malformed", "submessages.drop_invalid"):
+    for name in (
+        "walker.drop_truncated",
+        "walker.drop_not_rtps",
+        "walker.drop_version",
+        "discovery.drop_malformed",
+        "submessages.drop_invalid",
+    ):
         assert one.bench.counts[name] == 0, name

@@ -1,4 +1,5 @@
-"""What DATA, HEARTBEAT, GAP and ACKNACK do. RTPS 2.3, 8.3.7 (which are invalid), 8.4.12 (what a reader keeps), 9.4.5 (octets)."""
+"""What DATA, HEARTBEAT, GAP and ACKNACK do. RTPS 2.3, 8.3.7 (which are invalid), 8.4.12 (what a reader keeps), 9.4.5
+(octets)."""
 
 from __future__ import annotations
 
@@ -25,7 +26,9 @@ def dropped(reason: str) -> Came:
     return NOTHING._replace(drops=[reason])
 
 
-def data(sequence: int, writer: bytes = W, text: bytes = TEXT, e: str = "<", options: int = 0, **more: Any) -> bytes:
+def data(
+    sequence: int, writer: bytes = W, text: bytes = TEXT, e: str = "<", options: int = 0, **more: Any
+) -> bytes:
     kind = CDR_LE if e == "<" else CDR_BE
     return hand.data(writer, sequence, struct.pack(">HH", kind, options) + text, e=e, **more)
 
@@ -109,7 +112,9 @@ def test_what_lies_before_inline_qos_and_inline_qos_itself_are_skipped() -> None
     qos = [
         hand.parameters(hand.parameter(0x83, bytes(24))),
         hand.parameters(hand.parameter(0x70, bytes(16)), hand.parameter(0x71, bytes(4))),
-        hand.parameters(hand.parameter(0x8000, b""), hand.parameter(0, bytes(8)), hand.parameter(0x5, b"\5\0\0\0text\0")),
+        hand.parameters(
+            hand.parameter(0x8000, b""), hand.parameter(0, bytes(8)), hand.parameter(0x5, b"\5\0\0\0text\0")
+        ),
         hand.parameters(),
     ]
 
@@ -413,7 +418,9 @@ def test_lists_of_discovery_are_given_with_what_is_known_of_who_says_them() -> N
             assert (meta.kind, meta.known, meta.slot, meta.gone, meta.has_key) == (kind, 1, 1, 0, 0)
             assert r.word(r.builtin(1, proxy, NEXT_LO)) == 2
             assert (await r.say(hand.data(writer, 1, said), slot=1)) == dropped("old")
-            assert (await r.say(hand.data(writer, 3, said), slot=1)) == dropped("early")._replace(due=[4 + proxy])
+            assert (await r.say(hand.data(writer, 3, said), slot=1)) == dropped("early")._replace(
+                due=[4 + proxy]
+            )
             came = await r.say(hand.heartbeat(writer, 1, 4, 1), slot=1)
             assert came.due == [4 + proxy] and r.word(r.builtin(1, proxy, LAST)) == 4
 
@@ -424,7 +431,13 @@ def test_a_departure_says_so_with_its_key_in_the_scratch_area() -> None:
     key = bytes(range(0x80, 0x90))
 
     async def script(r: Receiver) -> None:
-        for status, gone in ((b"\0\0\0\1", 1), (b"\0\0\0\2", 1), (b"\0\0\0\3", 1), (b"\0\0\0\4", 0), (b"\3\0\0\0", 0)):
+        for status, gone in (
+            (b"\0\0\0\1", 1),
+            (b"\0\0\0\2", 1),
+            (b"\0\0\0\3", 1),
+            (b"\0\0\0\4", 0),
+            (b"\3\0\0\0", 0),
+        ):
             for with_key in (True, False):
                 found = [hand.parameter(0x70, key)] if with_key else []
                 qos = hand.parameters(*found, hand.parameter(0x71, status))
@@ -472,5 +485,7 @@ def test_a_readers_id_is_no_writers_and_the_reverse() -> None:
 
 
 def test_every_reason_has_its_output() -> None:
-    found = {name.removeprefix("drop_") for name in Receiver().block.signature.members if name.startswith("drop_")}
+    found = {
+        name.removeprefix("drop_") for name in Receiver().block.signature.members if name.startswith("drop_")
+    }
     assert found == set(DROPS)

@@ -1,4 +1,5 @@
-"""Where things lie in the two memories: nothing at the place of another, whatever the widths of the numbers that say where."""
+"""Where things lie in the two memories: nothing at the place of another, whatever the widths of the numbers that say
+where."""
 
 from __future__ import annotations
 

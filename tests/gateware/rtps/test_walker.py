@@ -265,7 +265,7 @@ def test_a_message_cut_at_every_octet_gives_what_is_before_the_cut_and_is_counte
 
 def test_no_body_of_a_datagram_that_ends_badly_anywhere_ends_well() -> None:
     message = hand.message(BEAT, hand.info_dst(OURS), hand.submessage(0x15, 4, data()[4:], length=0))
-    cuts = range(0, len(message) + 1)
+    cuts = range(len(message) + 1)
     got, counts, heard = run([Bad(message[:cut]) for cut in cuts] + [hand.message(BEAT)])
     assert [body for body in got if body.octets is not None] == [Body(7, 1, 0, BEAT[4:])]
     assert heard == [0]

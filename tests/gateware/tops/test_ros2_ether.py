@@ -10,10 +10,10 @@ from amaranth.lib.wiring import In
 
 from engine.rtps.network import LATCHED, RELIABLE
 from gateware.tops.ros2_node import NODE, PUBLISHED, SUBSCRIBED, TYPE, Ros2Node
-from roslet.engine.ros2 import discovery_info
 from roslet.engine.rtps import events
 from roslet.gateware.config import Config
 from roslet.gateware.tops.ros2_ether import Ros2Ether
+from roslet.wire import discovery_info
 from sim.test_wire import ParticipantStation
 
 # Table A-1: inputs, then outputs, with their widths by the defaults of Table A-3; a node's name has 32 octets.
@@ -32,8 +32,9 @@ INPUTS = {
 OUTPUTS = {
     "phy_txd": 4, "phy_tx_en": 1, "phy_rst_n": 1, "ros2_pub_app_data_grant": 1, "ros2_sub_app_data_len": 8,
     "ros2_sub_app_data_rep_id": 16, "ros2_sub_app_data_grant": 1, "ros2_sub_app_data_recv": 1, "ros2_sub_app_data_addr": 6,
-    "ros2_sub_app_data_ce": 1, "ros2_sub_app_data_we": 1, "ros2_sub_app_data_wdata": 8, "udp_rxbuf_addr": 6, "udp_rxbuf_ce": 1,
-    "udp_rxbuf_we": 1, "udp_rxbuf_wdata": 32, "udp_rxbuf_grant": 1, "udp_txbuf_addr": 6, "udp_txbuf_ce": 1,
+    "ros2_sub_app_data_ce": 1, "ros2_sub_app_data_we": 1, "ros2_sub_app_data_wdata": 8, "udp_rxbuf_addr": 6,
+    "udp_rxbuf_ce": 1, "udp_rxbuf_we": 1, "udp_rxbuf_wdata": 32, "udp_rxbuf_grant": 1,
+    "udp_txbuf_addr": 6, "udp_txbuf_ce": 1,
     "udp_txbuf_grant": 1, "ip_payloadsmem_addr": 12, "ip_payloadsmem_ce": 1, "ip_payloadsmem_we": 1,
     "ip_payloadsmem_wdata": 8,
 }  # fmt: skip
@@ -126,4 +127,6 @@ def test_topics_that_are_disabled_go_and_come_again(session: Session) -> None:
 
 def test_nothing_was_dropped_that_should_not_be(session: Session) -> None:
     assert session.node.gates.faults == {}
-    assert not [name for name in session.node.drops() if "long" in name or "invalid" in name or "malformed" in name]
+    assert not [
+        name for name in session.node.drops() if "long" in name or "invalid" in name or "malformed" in name
+    ]

@@ -10,13 +10,13 @@ from roslet.cli.doctor import FINE, INFO, PROBLEM, WARNING, Finding
 from roslet.cli.ros2.graph import Ros2Graph, full_name, mismatches
 from roslet.cli.ros2.multicast import Listener, has_route, hears_itself
 from roslet.cli.ros2.nodes import vendor_name
-from roslet.engine.ros2 import discovery_info
 from roslet.engine.ros2.context import is_old
 from roslet.errors import InvalidName, Unreachable
 from roslet.io.domain import GROUP
 from roslet.io.interfaces import choose, interfaces, require
 from roslet.io.udp import MAX_PARTICIPANT_ID, UNICAST_IDS
 from roslet.names import LOCALHOST, OFF, SUBNET, SYSTEM_DEFAULT, TOPIC, parse_ros2_network
+from roslet.wire import discovery_info
 from roslet.wire.rtps import locator
 
 if TYPE_CHECKING:

@@ -4,12 +4,13 @@ After `start`, the owner gives every event of the participant to `handle_event` 
 the participant's own. Times are those of the participant.
 """
 
-from roslet.engine.ros2 import discovery_info, user_data
-from roslet.engine.ros2.discovery_info import NodeEntities, ParticipantEntities
+from roslet.engine.ros2 import user_data
 from roslet.engine.ros2.graph import Graph
 from roslet.engine.rtps import events
 from roslet.errors import NodeClosed, ProtocolError
 from roslet.names import check_namespace, check_node_name
+from roslet.wire import discovery_info
+from roslet.wire.discovery_info import NodeEntities, ParticipantEntities
 from roslet.wire.rtps import qos as policies
 from roslet.wire.rtps.data import FLAG_D
 from roslet.wire.rtps.guid import ENTITYID_PARTICIPANT, VENDORID_ROSLET, VENDORID_UNKNOWN

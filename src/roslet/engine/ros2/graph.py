@@ -10,7 +10,7 @@ from roslet.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from roslet.engine.ros2.discovery_info import ParticipantEntities
+    from roslet.wire.discovery_info import ParticipantEntities
     from roslet.wire.rtps.endpoint_data import EndpointData
     from roslet.wire.rtps.participant_data import ParticipantData
     from roslet.wire.rtps.qos import Qos

@@ -10,13 +10,16 @@ from roslet.gateware.rtps.ports import READ_LATENCY, ReadSignature
 from roslet.gateware.rtps.rom import REGISTER_BITS, WORD_BITS, Op, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 
-SUBJECT = data.StructLayout({"builtin": 1, "kind": 2, "slot": 8, "endpoint": 8, "entity": 8, "sample": 32, "words": 16})
-"""Whom and what it is about: the participant; the proxy, builtin or the user's; the number of our endpoint as its entity id has
-it; where the message begins in our own memory, and how many words it has."""
+SUBJECT = data.StructLayout(
+    {"builtin": 1, "kind": 2, "slot": 8, "endpoint": 8, "entity": 8, "sample": 32, "words": 16}
+)
+"""Whom and what it is about: the participant; the proxy, builtin or the user's; the number of our endpoint as its entity id
+has it; where the message begins in our own memory, and how many words it has."""
 
 
 class Composer(wiring.Component):
-    """Runs through the template that begins at `at`, from `start`, high for a cycle, on: one word a cycle, from 6 cycles later.
+    """Runs through the template that begins at `at`, from `start`, high for a cycle, on: one word a cycle, from 6 cycles
+    later.
 
     Ports: `subject`, steady until `done`, which is high a cycle or two after the last word; `register`, in the same
     cycle, the value of the sender's that `which` names;
@@ -42,7 +45,9 @@ class Composer(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        m.submodules.rom = rom = memory.Memory(shape=WORD_BITS, depth=len(self._rom.words), init=self._rom.init())
+        m.submodules.rom = rom = memory.Memory(
+            shape=WORD_BITS, depth=len(self._rom.words), init=self._rom.init()
+        )
         read = rom.read_port()
         subject = self.subject
         starting = Signal()
@@ -70,7 +75,11 @@ class Composer(wiring.Component):
             self.which.eq(argument[:4]),
             self.push.eq(ready[-1]),
             self.word.eq(
-                Mux(sources[-1] == from_own, self.own.data, Mux(sources[-1] == from_peers, self.peers.data, literals[-1]))
+                Mux(
+                    sources[-1] == from_own,
+                    self.own.data,
+                    Mux(sources[-1] == from_peers, self.peers.data, literals[-1]),
+                )
             ),
             self.done.eq(over[-1]),
         ]

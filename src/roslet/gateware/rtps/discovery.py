@@ -1,4 +1,5 @@
-"""Who is there, and which of their endpoints match ours: SPDP and SEDP. RTPS 2.3, 8.5.3, 8.5.4; DDS 1.4, 2.2.3 (matching)."""
+"""Who is there, and which of their endpoints match ours: SPDP and SEDP. RTPS 2.3, 8.5.3, 8.5.4; DDS 1.4, 2.2.3
+(matching)."""
 
 from __future__ import annotations
 
@@ -29,12 +30,13 @@ class Discovery(wiring.Component):
     - A participant that announces itself has the first free slot, with proxies of its discovery endpoints, from which all
       is wanted and to which all is sent. Its next announcements move it. It goes, and its endpoints with it, when it says
       so or when nothing good was heard of it for its lease, and a second or two.
-    - An endpoint whose topic and type are one of ours, and whose QoS agrees, gets a proxy; one that we know moves, or goes where
-      it agrees no more. It goes when it is disposed. Our endpoints' QoS other than reliability and durability are the defaults.
+    - An endpoint whose topic and type are one of ours, and whose QoS agrees, gets a proxy; one that we know moves, or goes
+      where it agrees no more. It goes when it is disposed. Our endpoints' QoS other than reliability and durability are the
+      defaults.
 
     Nobody alive makes room for somebody new. Good, and dropped: `drop_full`, no free slot or proxy; `drop_incomplete`, what
-    makes a participant or endpoint is not all there; `drop_refused`, another domain; `drop_qos`, the topic and type are ours, and
-    the QoS does not agree; and `drop_malformed` of `Parameters`.
+    makes a participant or endpoint is not all there; `drop_refused`, another domain; `drop_qos`, the topic and type are
+    ours, and the QoS does not agree; and `drop_malformed` of `Parameters`.
     """
 
     def __init__(self, peers: PeerMap, own: OwnMap, judge_domain: bool = True) -> None:
@@ -197,7 +199,10 @@ class Discovery(wiring.Component):
             with m.State("REMOVE"):  # the participant, and each of its endpoints
                 m.d.comb += address.eq(peers.endpoint(step, tables.INFO))
                 m.d.sync += [step.eq(step + 1), self.alive.bit_select(slot, 1).eq(0)]
-                with m.If((step >= READ_LATENCY) & (self.peers.data[tables.INFO_SLOT : tables.INFO_SLOT + 8] == slot)):
+                with m.If(
+                    (step >= READ_LATENCY)
+                    & (self.peers.data[tables.INFO_SLOT : tables.INFO_SLOT + 8] == slot)
+                ):
                     m.d.sync += self.matched.bit_select(before, 1).eq(0)
                 with m.If(step == peers.endpoints + READ_LATENCY - 1):
                     m.next = "PROCEED"
@@ -207,16 +212,24 @@ class Discovery(wiring.Component):
         return m
 
     def _participant(
-        self, m: Module, read: Any, write: Any, address: Value, slot: Value, step: Value, before: Value, heard: Value, free: Any
+        self,
+        m: Module,
+        read: Any,
+        write: Any,
+        address: Value,
+        slot: Value,
+        step: Value,
+        before: Value,
+        heard: Value,
+        free: Any,
     ) -> None:
         peers, meta = self._peers, self.i.meta
         fresh = Signal()
         with m.State("PARTICIPANT"):
             m.d.sync += [step.eq(0), fresh.eq(~meta.known)]
             m.next = "PROCEED"
-            with m.If(meta.gone):
-                with m.If(meta.known):
-                    m.next = "REMOVE"
+            with m.If(meta.gone), m.If(meta.known):
+                m.next = "REMOVE"
             with m.Elif(read.refused):
                 m.d.comb += self.drop_refused.eq(1)
             with m.Elif(~read.guid | ~read.meta):
@@ -240,7 +253,11 @@ class Discovery(wiring.Component):
                     Mux(before >= tables.LEASE, read.lease + 1, self.peers.data),
                 )
             with m.If(step == tables.LEFT + READ_LATENCY):
-                m.d.sync += [step.eq(0), self.alive.bit_select(slot, 1).eq(1), heard.bit_select(slot, 1).eq(1)]
+                m.d.sync += [
+                    step.eq(0),
+                    self.alive.bit_select(slot, 1).eq(1),
+                    heard.bit_select(slot, 1).eq(1),
+                ]
                 m.next = "PROCEED"
                 with m.If(fresh):
                     m.d.comb += self.greet.eq(1)
@@ -253,7 +270,10 @@ class Discovery(wiring.Component):
                 Mux(word == tables.ASK_TO, tables.EVERYTHING, word == tables.ASK_FROM),
             )
             write(peers.builtin(slot, kind, word), value)
-            m.d.comb += [self.due.eq(step[:2] == 3), self.due_proxy.eq(Cat(kind, slot)[: len(self.due_proxy) - 1])]
+            m.d.comb += [
+                self.due.eq(step[:2] == 3),
+                self.due_proxy.eq(Cat(kind, slot)[: len(self.due_proxy) - 1]),
+            ]
             m.d.sync += step.eq(step + 1)
             with m.If(step[:4] == 15):
                 m.next = "PROCEED"
@@ -304,7 +324,8 @@ class Discovery(wiring.Component):
                 with m.If(same[n]):
                     ours = [table[n] if n < len(table) else None for table in (own.writers, own.readers)]
                     flags = [
-                        (C(bool(one and one.reliable), 1), C(bool(one and one.transient_local), 1)) for one in ours
+                        (C(bool(one and one.reliable), 1), C(bool(one and one.transient_local), 1))
+                        for one in ours
                     ]
                     m.d.sync += [
                         local.eq(n),
@@ -315,9 +336,8 @@ class Discovery(wiring.Component):
                         agreed.eq(agree[n]),
                     ]
             m.next = "PROCEED"
-            with m.If(meta.gone):
-                with m.If(found):
-                    m.d.sync += self.matched.bit_select(endpoint, 1).eq(0)
+            with m.If(meta.gone), m.If(found):
+                m.d.sync += self.matched.bit_select(endpoint, 1).eq(0)
             with m.Elif(~read.guid | ~read.topic | ~read.type):
                 m.d.comb += self.drop_incomplete.eq(1)
             with m.Elif(same.any()):
@@ -353,15 +373,17 @@ class Discovery(wiring.Component):
                 Mux(is_writer, 0, last),  # LAST, ASK_TO
                 Mux(is_writer, 0, first),  # START
             ]
-            with m.If(step >= READ_LATENCY):
-                with m.Switch(before[:3]):
-                    for n, value in enumerate(words):
-                        with m.Case(n):
-                            write(peers.endpoint(endpoint, n), value)
+            with m.If(step >= READ_LATENCY), m.Switch(before[:3]):
+                for n, value in enumerate(words):
+                    with m.Case(n):
+                        write(peers.endpoint(endpoint, n), value)
             m.d.sync += step.eq(step + 1)
             with m.If((step == tables.PORT + READ_LATENCY) & found):
                 m.next = "PROCEED"  # it has only moved
             with m.If(step == len(words) - 1 + READ_LATENCY):
                 m.d.sync += self.matched.bit_select(endpoint, 1).eq(1)
-                m.d.comb += [self.due.eq(1), self.due_proxy.eq(Cat(endpoint, C(0, len(self.due_proxy) - 1 - len(endpoint)), C(1, 1)))]
+                m.d.comb += [
+                    self.due.eq(1),
+                    self.due_proxy.eq(Cat(endpoint, C(0, len(self.due_proxy) - 1 - len(endpoint)), C(1, 1))),
+                ]
                 m.next = "PROCEED"

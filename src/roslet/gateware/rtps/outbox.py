@@ -17,8 +17,9 @@ class Outbox(wiring.Component):
     """A ring of `depth` words, in which datagrams are written one after another and sent in that order.
 
     Ports: with `push` the word `word` is the next of a datagram, to which `ip` and `port` belong when `finish` is high for a
-    cycle, with or after its last word; then three cycles pass with `busy` high, in which no word may come. `room` is high while a
-    datagram of `longest` octets can be written. `source_port`, ours. `lookup` asks for hardware addresses; `o`, the data.
+    cycle, with or after its last word; then three cycles pass with `busy` high, in which no word may come. `room` is high
+    while a datagram of `longest` octets can be written. `source_port`, ours. `lookup` asks for hardware addresses; `o`, the
+    data.
 
     A datagram begins to leave 7 cycles after `finish` if its hardware address is known and none is before it, then an octet
     a cycle. Who does not answer to ARP within `patience` cycles gets nothing (`drop_unresolved`): who comes behind waits no
@@ -73,9 +74,8 @@ class Outbox(wiring.Component):
         with m.If(self.push):
             m.d.sync += length.eq(length + 1)
         with m.FSM(name="write"):
-            with m.State("IDLE"):
-                with m.If(self.finish):
-                    m.next = "ADDRESS"
+            with m.State("IDLE"), m.If(self.finish):
+                m.next = "ADDRESS"
             with m.State("ADDRESS"):
                 m.d.comb += [self.busy.eq(1), settling.eq(1)]
                 m.d.comb += [write.en.eq(1), write.addr.eq(begin), write.data.eq(self.ip)]
@@ -165,4 +165,3 @@ class Outbox(wiring.Component):
                     m.d.sync += done.eq(after)
                     m.next = "IDLE"
         return m
-

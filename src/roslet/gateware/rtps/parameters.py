@@ -6,10 +6,11 @@ of `discovery`.
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Callable
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
-from amaranth.lib import data, enum, wiring
+from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.meta import ADDRESSES
@@ -30,7 +31,7 @@ MAX_LEASE = 0xFFFF
 """Seconds: leases are taken to be no longer, 18 hours."""
 
 
-class _What(enum.Enum, shape=5):
+class _What(enum.IntEnum):
     """What is done with the value of a parameter."""
 
     SKIP = 0
@@ -91,19 +92,19 @@ READ = data.StructLayout(
         "durability": 2,
     }
 )
-"""What a list has said. `guid`, `meta`, `user`, `topic`, `type`: it was there (the locators, one that can be used); `lease` in
-seconds; `entity` id; `refused`, a policy that none of our endpoints agrees to, or another domain, or something that must be
-understood; `reliable` and `durability`, kinds, as offered or requested."""
+"""What a list has said. `guid`, `meta`, `user`, `topic`, `type`: it was there (the locators, one that can be used); `lease`
+in seconds; `entity` id; `refused`, a policy that none of our endpoints agrees to, or another domain, or something that must
+be understood; `reliable` and `durability`, kinds, as offered or requested."""
 
 
 class Parameters(wiring.Component):
     """Reads one list at a time.
 
-    Ports: `i`, lists with their encapsulation header; `peers` and `own`, read ports; `write`; `addresses`, `domain`, ours: that
-    is not looked at where `judge_domain` is false.
-    `read` is what the list has said, and `same` a bit for each of our endpoints of the other kind: it has this topic and this
-    type. Both are steady while `done` is high: the list's good end is at `i`, and stays there until `proceed` is high for a
-    cycle. After a bad end the next list is read.
+    Ports: `i`, lists with their encapsulation header; `peers` and `own`, read ports; `write`; `addresses`, `domain`, ours:
+    that is not looked at where `judge_domain` is false.
+    `read` is what the list has said, and `same` a bit for each of our endpoints of the other kind: it has this topic and
+    this type. Both are steady while `done` is high: the list's good end is at `i`, and stays there until `proceed` is high
+    for a cycle. After a bad end the next list is read.
 
     In the scratch area there are then the words of a participant, of which `read` says whether they were there, or of an
     endpoint its locator. Of several locators the first in our own subnet is taken, else the first.
@@ -169,15 +170,16 @@ class Parameters(wiring.Component):
             with m.State("PARAMETER"):
                 pid = Mux(little, word[:16], Cat(word[8:16], word[:8]))
                 length = Mux(little, word[16:32], Cat(word[24:32], word[16:24]))
+                # What must be understood, and is not.
+                unknown = (pid & pl.FLAG_MUST_UNDERSTAND).any() & ~(pid & pl.FLAG_VENDOR).any()
                 m.d.sync += [what.eq(_What.SKIP), left.eq(length[2:]), at.eq(0), step.eq(0)]
                 for here, table in ((is_participant, _OF_PARTICIPANTS), (~is_participant, _OF_ENDPOINTS)):
                     with m.If(here & came), m.Switch(pid):
                         for value, action in table.items():
                             with m.Case(value):
                                 m.d.sync += what.eq(action)
-                        with m.Default():
-                            with m.If((pid & pl.FLAG_MUST_UNDERSTAND).any() & ~(pid & pl.FLAG_VENDOR).any()):
-                                m.d.sync += read.refused.eq(1)
+                        with m.Default(), m.If(unknown):
+                            m.d.sync += read.refused.eq(1)
                 with m.If(came):
                     m.d.comb += i.ready.eq(1)
                     m.next = "VALUE"
@@ -257,7 +259,9 @@ class Parameters(wiring.Component):
                 (_What.USER_LOCATOR, read.user, tables.USER_IP),
             ):
                 with m.Case(kind):
-                    self._locator(m, at, step, word, number, last, flag, ip, ((word ^ own_ip) & mask) == 0, keep)
+                    self._locator(
+                        m, at, step, word, number, last, flag, ip, ((word ^ own_ip) & mask) == 0, keep
+                    )
             with m.Case(_What.DOMAIN):
                 if self._judge_domain:
                     refuse(first & (number != self.domain))
@@ -357,4 +361,3 @@ class Parameters(wiring.Component):
                 m.d.sync += [text_left.eq(number), flag.eq(number[16:] == 0)]
                 with m.If((number == 0) | (number[16:] != 0) | (((number[:16] + 3) >> 2) >= left)):
                     m.next = "MALFORMED"
-

@@ -24,7 +24,6 @@ from roslet.gateware.rtps.walker import Walker
 from roslet.gateware.stream import FrameSignature
 from roslet.gateware.words import MessageSignature
 
-
 DISCOVERY_SIZE = 900
 """Octets of a DATA of SEDP, at most in practice: what peers repeat together must fit a datagram that we can receive."""
 
@@ -32,7 +31,8 @@ DISCOVERY_SIZE = 900
 class Participant(wiring.Component):
     """A participant with fixed writers and readers.
 
-    writers, readers    the user's, in the order of their numbers; `kept` are further writers, whose only message is there from
+    writers, readers    the user's, in the order of their numbers; `kept` are further writers, whose only message is there
+    from
                         the beginning: its octets, without the encapsulation header
     prefix              our GUID prefix
     address, ports      ours, of discovery and of the user's messages
@@ -43,8 +43,9 @@ class Participant(wiring.Component):
     lease               seconds, which peers are told
 
     Ports: `udp_rx` and `udp_tx`, data of datagrams, `lookup`; `publish0` .., messages; `receive0` ..,
-    messages, with what is known of them; `room`, a bit for each reader, as `Submessages` has it; `addresses`; `tick`, `announce`,
-    `sweep`, high for a cycle each second, when we shall be announced, and when readers shall be reminded; `drop_<block>_<reason>`.
+    messages, with what is known of them; `room`, a bit for each reader, as `Submessages` has it; `addresses`; `tick`,
+    `announce`, `sweep`, high for a cycle each second, when we shall be announced, and when readers shall be reminded;
+    `drop_<block>_<reason>`.
 
     What is known at run time only: `own`, writes our own memory, for which nothing of this may be going on: hold it in reset
     meanwhile; `group_port` and `source_port`, where all are announced to, and what we send from; `writers_enabled`,
@@ -151,7 +152,10 @@ class Participant(wiring.Component):
             receive = getattr(self, f"receive{n}")
             m.d.comb += [receive.stream.payload.eq(user.stream.payload), receive.meta.eq(user.meta)]
             with m.If(user.meta.reader == n):
-                m.d.comb += [receive.stream.valid.eq(user.stream.valid), user.stream.ready.eq(receive.stream.ready)]
+                m.d.comb += [
+                    receive.stream.valid.eq(user.stream.valid),
+                    user.stream.ready.eq(receive.stream.ready),
+                ]
         m.d.comb += [
             walker.known.eq(queue.known),
             walker.good.eq(queue.good),

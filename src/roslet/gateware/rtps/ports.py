@@ -37,12 +37,13 @@ def exchanged(word: Value) -> Value:
 
 
 USER = data.StructLayout({"reader": 8, "representation": 16})
-"""Beside a message of the user's: the number of our reader, and the representation identifier, RTPS 2.3, 10.5, as a number."""
+"""Beside a message of the user's: the number of our reader, and the representation identifier, RTPS 2.3, 10.5, as a
+number."""
 
 PARTICIPANTS, PUBLICATIONS, SUBSCRIPTIONS = range(3)
 DISCOVERY = data.StructLayout({"kind": 2, "known": 1, "slot": 8, "gone": 1, "has_key": 1})
-"""Beside a parameter list of discovery: of which writer it is, from whom; `gone`, it is about something that is no more, whose
-GUID is in the scratch area where `has_key`."""
+"""Beside a parameter list of discovery: of which writer it is, from whom; `gone`, it is about something that is no more,
+whose GUID is in the scratch area where `has_key`."""
 
 
 class DueSignature(wiring.Signature):

@@ -18,13 +18,13 @@ SPARE = 2
 class DatagramQueue(wiring.Component):
     """A queue of words for datagrams of up to `longest` octets.
 
-    Ports: `i`, the data of datagrams; `o`, the same in words, cut through; `known` is high while the end of the datagram that
-    `o` gives is in the queue, or at `o`, and `good` is then whether it is a good one. So who reads `o` may act on what it has
-    read before it has read all of it.
+    Ports: `i`, the data of datagrams; `o`, the same in words, cut through; `known` is high while the end of the datagram
+    that `o` gives is in the queue, or at `o`, and `good` is then whether it is a good one. So who reads `o` may act on what
+    it has read before it has read all of it.
 
-    Throughput one octet a cycle; a word leaves 4 cycles after its last octet came. After the end of a datagram `i` waits until
-    that has been taken from `o`: what comes meanwhile must be held elsewhere. A datagram that is too long gets a bad end
-    in place of what does not fit, and is counted by `drop_long` if its own end is good.
+    Throughput one octet a cycle; a word leaves 4 cycles after its last octet came. After the end of a datagram `i` waits
+    until that has been taken from `o`: what comes meanwhile must be held elsewhere. A datagram that is too long gets a bad
+    end in place of what does not fit, and is counted by `drop_long` if its own end is good.
     """
 
     def __init__(self, longest: int) -> None:
@@ -68,9 +68,8 @@ class DatagramQueue(wiring.Component):
         with m.Elif(words.r_rdy & ~spared):
             m.d.sync += [spare.eq(words.r_data), spared.eq(1)]
         last = Signal(2)  # octets of the last word, 0 where that is whole
-        with m.If(self.known):
-            with m.If(o.valid & o.ready & o.payload.end):
-                m.d.sync += self.known.eq(0)
+        with m.If(self.known), m.If(o.valid & o.ready & o.payload.end):
+            m.d.sync += self.known.eq(0)
         with m.Elif(i.valid & i.payload.end):
             with m.If(at != 0):
                 m.d.comb += [item.data.eq(held), words.w_en.eq(1)]

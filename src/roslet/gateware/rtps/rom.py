@@ -5,24 +5,42 @@ The literal words are what the software codec emits; where it was given a placeh
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Mapping, Sequence
-
-from amaranth.lib import enum
 
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.tables import Local, OwnMap
 from roslet.wire.fields import Field
-from roslet.wire.rtps import ack_nack, data, gap, guid, header, heartbeat, inline_qos, locator, participant_data
-from roslet.wire.rtps import parameter_list, submessage
+from roslet.wire.rtps import (
+    ack_nack,
+    data,
+    gap,
+    guid,
+    header,
+    heartbeat,
+    inline_qos,
+    locator,
+    parameter_list,
+    participant_data,
+    submessage,
+)
 from roslet.wire.rtps.endpoint_data import EndpointData
 from roslet.wire.rtps.info_dst import FIELDS as INFO_DST_FIELDS
-from roslet.wire.rtps.qos import DEFAULT_BLOCKING, RELIABLE, BEST_EFFORT, TRANSIENT_LOCAL, VOLATILE, KEEP_LAST, Qos
+from roslet.wire.rtps.qos import (
+    BEST_EFFORT,
+    DEFAULT_BLOCKING,
+    KEEP_LAST,
+    RELIABLE,
+    TRANSIENT_LOCAL,
+    VOLATILE,
+    Qos,
+)
 from roslet.wire.rtps.submessage import FLAG_E
 
 WORD_BITS = 36
 
 
-class Op(enum.Enum, shape=4):
+class Op(enum.IntEnum):
     """What a word of a template is, and its argument, the other 32 bits."""
 
     LITERAL = 0  # the argument
@@ -39,7 +57,7 @@ class Op(enum.Enum, shape=4):
 REGISTER_BITS = 4
 
 
-class Register(enum.Enum, shape=REGISTER_BITS):
+class Register(enum.IntEnum):
     """Values of the sender's."""
 
     FIRST = 0
@@ -54,7 +72,7 @@ class Register(enum.Enum, shape=REGISTER_BITS):
 
 
 Item = tuple[Op, int]
-Value = int | bytes | Item
+Value = int | bytes | Item | list[Item]
 
 
 def _words(octets: bytes, references: Mapping[int, Item] | None = None) -> list[Item]:
@@ -115,7 +133,7 @@ class Rom:
         }
         self._header = _words(header.own(_PREFIX), self._references)
         prefix: list[Item] = [(Op.PARTICIPANT, tables.PREFIX + n) for n in range(3)]
-        to_one = _submessage(submessage.INFO_DST, 0, _fixed(INFO_DST_FIELDS, {"guidPrefix": prefix}))  # type: ignore[dict-item]
+        to_one = _submessage(submessage.INFO_DST, 0, _fixed(INFO_DST_FIELDS, {"guidPrefix": prefix}))
         self._directed = [*self._header, *to_one]
         self._participant(domain, lease, enclave)
         for writer, builtin in ((True, "publication"), (False, "subscription")):
@@ -216,7 +234,8 @@ class Rom:
         self._add(f"{builtin}_acknack", [*self._directed, *self._acknack((reader, their_writer))])
 
     def _endpoint(self, local: Local, n: int, writer: bool) -> list[Item]:
-        """With names that are known at run time only, parameters of the greatest size: behind its NUL a name ends in zeros."""
+        """With names that are known at run time only, parameters of the greatest size: behind its NUL a name ends in
+        zeros."""
         names = (local.topic, local.type_name)
         if local.rooms is not None:
             names = (_stand_in(local.rooms[0], "t"), _stand_in(local.rooms[1], "y"))

@@ -24,8 +24,8 @@ def find_endpoint(
     found: Value,
     then: str,
 ) -> None:
-    """The states SCAN, INFO and CHECK of an FSM: find participant `slot`'s writer, or reader, with entity id `key`, among those
-    in `matched`, by the read port `port`.
+    """The states SCAN, INFO and CHECK of an FSM: find participant `slot`'s writer, or reader, with entity id `key`, among
+    those in `matched`, by the read port `port`.
 
     In state `then`, `found` says whether it is there; if so, it is `endpoint`, and `info` is its INFO. `found` must be low
     before. Takes one cycle for each endpoint and two more, and four for each other endpoint with an equal id.

@@ -31,9 +31,9 @@ class Sender(wiring.Component):
 
     Ports: `publish0` .. for each writer of the user, the first `users` of the tables' writers: its messages. `job`, `valid`,
     `taken`, of `Turns`; `matched`, the user proxies that there are; `group_port`, where all are to be announced to;
-    `peers` and `own`, read ports, and `write`; `template`, `start`, `done`, `which`, `register`, `subject`, of the composer; `room`, `busy`, `finish`, `ip`,
-    `port`, of the outbox; `writers`, `readers`, a bit for each of ours that is enabled; `again`, high for a cycle when every
-    proxy must be served once.
+    `peers` and `own`, read ports, and `write`; `template`, `start`, `done`, `which`, `register`, `subject`, of the composer;
+    `room`, `busy`, `finish`, `ip`, `port`, of the outbox; `writers`, `readers`, a bit for each of ours that is enabled;
+    `again`, high for a cycle when every proxy must be served once.
 
     - When one of ours is enabled or disabled, all are told of again, under new numbers: of those that are not enabled, that
       they are gone.
@@ -41,8 +41,8 @@ class Sender(wiring.Component):
       HEARTBEAT to those that are reliable. Between two messages somebody else is served.
     - A peer's writer gets an ACKNACK when it is due: what is missing up to its last, `window` of it at most, as peers put
       what they repeat into one datagram.
-    - A peer's reader gets, when it has asked, what it has asked for, of what is kept; a GAP for what is not; and a HEARTBEAT.
-      Otherwise it gets a HEARTBEAT if it has not acknowledged everything.
+    - A peer's reader gets, when it has asked, what it has asked for, of what is kept; a GAP for what is not; and a
+      HEARTBEAT. Otherwise it gets a HEARTBEAT if it has not acknowledged everything.
     - Our announcement goes to everybody, or to the participant that is to be greeted.
 
     Dropped: `drop_long{n}`, a message of more words than its writer's.
@@ -108,10 +108,9 @@ class Sender(wiring.Component):
             self._reader(m)
             if self._users:
                 self._publish(m)
-            with m.State("COMPOSE"):
-                with m.If(self.room & ~self.busy):
-                    m.d.comb += self.start.eq(1)
-                    m.next = "COMPOSING"
+            with m.State("COMPOSE"), m.If(self.room & ~self.busy):
+                m.d.comb += self.start.eq(1)
+                m.next = "COMPOSING"
             with m.State("COMPOSING"):
                 m.d.comb += self.finish.eq(self.done)
                 with m.If(self.done), m.Switch(self._after):
@@ -186,7 +185,8 @@ class Sender(wiring.Component):
         """Where our writer keeps the message with this number."""
         own = self._own
         places = [
-            C(base, own.address_bits) + (number[: one.depth.bit_length() - 1] << (own.stride(one).bit_length() - 1))
+            C(base, own.address_bits)
+            + (number[: one.depth.bit_length() - 1] << (own.stride(one).bit_length() - 1))
             for base, one in zip(own.samples, own.writers, strict=True)
         ]
         return self._choose(places)
@@ -409,7 +409,11 @@ class Sender(wiring.Component):
                 for name, table in (("publication", own.writers), ("subscription", own.readers))
             ]
             told = [
-                Mux(bits.bit_select(self._local[: len(bits).bit_length()], 1), start, self._rom.start[f"{name}_gone"])
+                Mux(
+                    bits.bit_select(self._local[: len(bits).bit_length()], 1),
+                    start,
+                    self._rom.start[f"{name}_gone"],
+                )
                 for bits, start, name in (
                     (self.writers, starts[0], "publication"),
                     (self.readers, starts[1], "subscription"),

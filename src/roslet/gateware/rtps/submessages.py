@@ -42,9 +42,10 @@ class Submessages(wiring.Component):
     """Does what submessages say, and gives away what DATA carry.
 
     Ports: `i`, bodies of submessages (`Walker`); `user`, messages for our readers; `discovery`, parameter lists of
-    participants and endpoints; `room`, a bit for each of our readers: whoever takes its messages can take a whole one now, and
-    waits with it for no longer than it takes to store; `over`, no datagram is passing; `alive`, `matched`, the participants and user proxies that there are;
-    `peers`, a read port, and `write`; `due` is high for a cycle when something must be sent on behalf of proxy `due_proxy`.
+    participants and endpoints; `room`, a bit for each of our readers: whoever takes its messages can take a whole one now,
+    and waits with it for no longer than it takes to store; `over`, no datagram is passing; `alive`, `matched`, the
+    participants and user proxies that there are; `peers`, a read port, and `write`; `due` is high for a cycle when something
+    must be sent on behalf of proxy `due_proxy`.
 
     A message's words go out before it is known that its datagram is good, and its end says so. What is kept is changed
     only at a good end:
@@ -128,7 +129,8 @@ class Submessages(wiring.Component):
         reliable = info[tables.INFO_RELIABLE] | builtin
         index = Mux(builtin, Cat(builtin_kind, meta.slot), endpoint)[: self._peers.index_bits]
         proxy = Cat(index, C(0, self._peers.index_bits - len(index)), ~builtin)
-        more, more_proxy = Signal(), Signal.like(self.due_proxy)  # is to be asked for when this datagram is over
+        # Is to be asked for when this datagram is over
+        more, more_proxy = Signal(), Signal.like(self.due_proxy)
         m.d.comb += self.due_proxy.eq(proxy)
         with m.If(more & self.over):
             m.d.comb += [self.due.eq(1), self.due_proxy.eq(more_proxy)]
@@ -213,7 +215,17 @@ class Submessages(wiring.Component):
                         m.d.sync += [builtin.eq(1), builtin_kind.eq(kind), found.eq(meta.known)]
                         m.next = "FOUND"
             find_endpoint(
-                m, self._peers, self.peers, self.matched, word, meta.slot, writer, endpoint, info, found, "FOUND"
+                m,
+                self._peers,
+                self.peers,
+                self.matched,
+                word,
+                meta.slot,
+                writer,
+                endpoint,
+                info,
+                found,
+                "FOUND",
             )
             with m.State("FOUND"):  # the word that was looked for is there still
                 m.d.comb += [i.ready.eq(1), self.peers.addr.eq(at(tables.NEXT_LO))]
@@ -277,7 +289,8 @@ class Submessages(wiring.Component):
                 with m.Elif(builtin):
                     m.next = "DISCOVERY"
                 with m.Elif(~(meta.flags & data_submessage.FLAG_D).any()):
-                    m.next = "ADVANCE"  # a message that was disposed, or has no content: there is nothing to tell
+                    # It was disposed, or has no content: there is nothing to tell.
+                    m.next = "ADVANCE"
                 with m.Elif(~room):
                     m.d.sync += reason.eq(busy)
                 with m.Else():
@@ -400,7 +413,7 @@ class Submessages(wiring.Component):
                 with m.If(sn[63]):
                     m.next = "INVALID"
             with m.State("GAP SET"):
-                # The run of ones at the beginning of the first word, a bit in two cycles; those behind it are asked for again.
+                # The run of ones at the beginning of the first word, a bit in two cycles; what is behind is asked for again.
                 one = number.bit_select(~last_lo[:5], 1)
                 with m.If(came & (skip != 0) & ~last_lo[5] & one & same):
                     m.d.sync += [
@@ -471,7 +484,12 @@ class Submessages(wiring.Component):
             with m.Else():
                 take("QOS VALUE")
                 with m.If(came):
-                    m.d.sync += [skip.eq(skip - 1), at.eq(at + 1), is_status.eq(0), has_key.eq(has_key | is_key)]
+                    m.d.sync += [
+                        skip.eq(skip - 1),
+                        at.eq(at + 1),
+                        is_status.eq(0),
+                        has_key.eq(has_key | is_key),
+                    ]
                     with m.If(is_status):  # four octets, whose last has the flags, in whatever byte order
                         m.d.sync += gone.eq((word[24:32] & (STATUS_DISPOSED | STATUS_UNREGISTERED)).any())
                     with m.If(is_key):
@@ -492,4 +510,3 @@ class Submessages(wiring.Component):
                 m.next = "INVALID"
         with m.If(ended):
             m.next = "INVALID"
-

@@ -95,7 +95,9 @@ class PeerMap:
 
     def builtin(self, slot: Value, kind: int | Value, word: int | Value) -> Value:
         """A word of a builtin proxy."""
-        return self._at(self._builtins, Cat(_number(word, 3), _number(kind, 2), _number(slot, self.slot_bits)))
+        return self._at(
+            self._builtins, Cat(_number(word, 3), _number(kind, 2), _number(slot, self.slot_bits))
+        )
 
     def endpoint(self, number: Value, word: int | Value) -> Value:
         """A word of a user proxy."""
@@ -131,7 +133,9 @@ class Local:
 
     def __post_init__(self) -> None:
         if not 1 <= self.depth <= MAX_HISTORY or self.depth & (self.depth - 1):
-            raise ValueError(f"a writer keeps a power of two of messages, at most {MAX_HISTORY}, not {self.depth}")
+            raise ValueError(
+                f"a writer keeps a power of two of messages, at most {MAX_HISTORY}, not {self.depth}"
+            )
 
 
 # Of our own memory

@@ -12,8 +12,8 @@ QUICK_PERIOD = 0.1
 
 
 class Timers(wiring.Component):
-    """Pulses of one cycle: `tick` each second, `sweep` each `sweep` seconds, `announce` each `announcement` seconds; of the last
-    the first QUICK are QUICK_PERIOD apart, and the very first comes when `enable` rises. Nothing while `enable` is low.
+    """Pulses of one cycle: `tick` each second, `sweep` each `sweep` seconds, `announce` each `announcement` seconds; of the
+    last the first QUICK are QUICK_PERIOD apart, and the very first comes when `enable` rises. Nothing while `enable` is low.
     """
 
     def __init__(self, clk_hz: float, announcement: float = 3.0, sweep: float = 0.1) -> None:
@@ -32,7 +32,9 @@ class Timers(wiring.Component):
             ("sweep", self.sweep, self._sweep - 1, self._sweep - 1),
             ("announcement", self.announce, Mux(quick != 0, self._quick - 1, self._announcement - 1), 0),
         ):
-            left = Signal(max(self._second, self._announcement, self._sweep).bit_length(), init=first, name=name)
+            left = Signal(
+                max(self._second, self._announcement, self._sweep).bit_length(), init=first, name=name
+            )
             m.d.comb += output.eq(self.enable & (left == 0))
             with m.If(self.enable):
                 m.d.sync += left.eq(Mux(left == 0, period, left - 1))

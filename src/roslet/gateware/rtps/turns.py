@@ -18,12 +18,12 @@ JOB = data.StructLayout({"user": 1, "index": 8, "asked": 1, "greet": 1, "announc
 class Turns(wiring.Component):
     """Remembers for whom something is due, and goes round among them.
 
-    Ports: `due0`, `due1`, for whom something is due from now on; `greet` with `greet_slot`, a participant that is to be greeted;
-    `announce`, everybody; `sweep`, each proxy once; `alive` and `matched`, the participants and user proxies that there are.
-    `job` is what is next while `valid`, and steady until `taken` is high for a cycle.
+    Ports: `due0`, `due1`, for whom something is due from now on; `greet` with `greet_slot`, a participant that is to be
+    greeted; `announce`, everybody; `sweep`, each proxy once; `alive` and `matched`, the participants and user proxies that
+    there are. `job` is what is next while `valid`, and steady until `taken` is high for a cycle.
 
-    One proxy is looked at in a cycle; what is due for one that is gone is forgotten. What becomes due for the job that is taken,
-    in that cycle or later, is another job. Greetings and announcements wait while anything else is found.
+    One proxy is looked at in a cycle; what is due for one that is gone is forgotten. What becomes due for the job that is
+    taken, in that cycle or later, is another job. Greetings and announcements wait while anything else is found.
     """
 
     def __init__(self, peers: PeerMap) -> None:

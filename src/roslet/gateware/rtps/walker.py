@@ -27,13 +27,13 @@ class Walker(wiring.Component):
 
     Ports: `i`, messages; `known` and `good`, the verdict on the one that `i` gives (`DatagramQueue`); `o`, the words of a
     body, never more than its length says, and an end, with what its header says beside it; `alive`, which participants are
-    known; `peers` and `own`, read ports; `source`, writes the sender's GUID prefix into the scratch area; `heard` is high for a
-    cycle when something good came from participant `heard_slot`. `hold` keeps the next message waiting, and `idle` is high
-    while none is taken.
+    known; `peers` and `own`, read ports; `source`, writes the sender's GUID prefix into the scratch area; `heard` is high
+    for a cycle when something good came from participant `heard_slot`. `hold` keeps the next message waiting, and `idle` is
+    high while none is taken.
 
     What is given are DATA, HEARTBEAT, ACKNACK and GAP, of messages to all or, by INFO_DST, to us. A good end is given only
-    once it is known that the whole datagram is good: who has acted upon it need take nothing back. Where the datagram is bad,
-    or ends within a submessage, so does the body.
+    once it is known that the whole datagram is good: who has acted upon it need take nothing back. Where the datagram is
+    bad, or ends within a submessage, so does the body.
 
     Throughput one word a cycle; a sender's prefix, and every INFO_SRC, takes 3 * (participants + 3) cycles.
 
@@ -133,9 +133,8 @@ class Walker(wiring.Component):
                             m.next = "SOURCE"
                         with m.Case(submessage.PAD, submessage.INFO_TS):
                             m.d.sync += to_end.eq(0)
-                        with m.Case(*FORWARDED):
-                            with m.If(for_us):
-                                m.next = "BODY"
+                        with m.Case(*FORWARDED), m.If(for_us):
+                            m.next = "BODY"
                         with m.Case(*FRAGMENTS):
                             m.d.comb += self.drop_fragment.eq(for_us)
             with m.State("DESTINATION"):

@@ -5,7 +5,6 @@ from __future__ import annotations
 from amaranth.hdl import Array, C, Cat, Module, Mux, ResetInserter, Signal, Value
 from amaranth.lib.wiring import In, Out, connect
 
-from roslet.engine.ros2 import discovery_info
 from roslet.gateware.arbiter import FrameArbiter
 from roslet.gateware.config import Config, rtps_ports
 from roslet.gateware.meta import UDP_TX
@@ -19,6 +18,7 @@ from roslet.gateware.rtps.timers import QUICK_PERIOD
 from roslet.gateware.tops.app_data import AppDataRx, AppDataTx
 from roslet.gateware.tops.ethernet_udp import EthernetUdp
 from roslet.gateware.udp import PortSwitch
+from roslet.wire import discovery_info
 from roslet.wire.net import udp
 from roslet.wire.rtps import guid, locator
 
@@ -106,7 +106,9 @@ class Ros2Ether(EthernetUdp):
         )
         self._publisher, self._subscriber = AppDataTx(size, on_change), AppDataRx(size)
         self._switch = PortSwitch((0, 0, 0, 1))
-        self._periods = Periods(config.ros2clk_hz, round(config.ros2clk_hz / config.prescaler_div * QUICK_PERIOD))
+        self._periods = Periods(
+            config.ros2clk_hz, round(config.ros2clk_hz / config.prescaler_div * QUICK_PERIOD)
+        )
         self._build(
             config,
             phy,
@@ -220,7 +222,9 @@ class Ros2Ether(EthernetUdp):
             *(getattr(periods, inside).eq(getattr(self, outside)) for outside, inside in PERIODS.items()),
         ]
 
-    def _load_and_publish(self, m: Module, loaded: Value, publishing: Value, meta_port: Value, user_port: Value) -> None:
+    def _load_and_publish(
+        self, m: Module, loaded: Value, publishing: Value, meta_port: Value, user_port: Value
+    ) -> None:
         """Words of ports, one at a time: of the message, and before, once, of all that has to be in the node's memory."""
         m.submodules.publisher = publisher = self._publisher
         own = self._participant.own_map

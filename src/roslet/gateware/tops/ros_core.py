@@ -12,18 +12,16 @@ from amaranth.lib import memory, wiring
 from amaranth.lib.cdc import ResetSynchronizer
 from amaranth.lib.wiring import In, Out, connect, flipped
 
-from roslet.engine.ros2 import discovery_info
 from roslet.gateware.drops import DropCounters
 from roslet.gateware.fifo import FrameFifo
 from roslet.gateware.mac import Mac, PhyReset, phy_clock
 from roslet.gateware.rtps.participant import Participant
-from roslet.gateware.rtps.ports import USER
 from roslet.gateware.rtps.rom import entity_id
 from roslet.gateware.rtps.tables import Local
 from roslet.gateware.rtps.timers import Timers
 from roslet.gateware.stack import UdpStack
 from roslet.gateware.udp import PortSwitch
-from roslet.gateware.words import MessageSignature
+from roslet.wire import discovery_info
 from roslet.wire.net import icmp
 from roslet.wire.rtps import guid, locator
 
@@ -53,7 +51,11 @@ class Identity:
     def __post_init__(self) -> None:
         object.__setattr__(self, "interface", ipaddress.IPv4Interface(self.address))
         if not self.guid_prefix:
-            made = guid.VENDORID_ROSLET + bytes.fromhex(self.mac.replace(":", "")) + self.session.to_bytes(4, "big")
+            made = (
+                guid.VENDORID_ROSLET
+                + bytes.fromhex(self.mac.replace(":", ""))
+                + self.session.to_bytes(4, "big")
+            )
             object.__setattr__(self, "guid_prefix", made)
         if len(self.guid_prefix) != 12:
             raise ValueError(f"a GUID prefix has 12 octets, not {len(self.guid_prefix)}")
@@ -81,9 +83,9 @@ class Identity:
 class RosCore(wiring.Component):
     """A node with these topics.
 
-    `writers` and `readers` have the names of DDS. Ports: `clk`, `rst_n`, those of the PHY; `publish0` .., `receive0` .., `room`, as
-    `Participant` has them. With `counters`, `drop_reason` and `drop_count` as `EthernetUdp` has them. What user logic does is in
-    the domain `node`, which is that of `clk`.
+    `writers` and `readers` have the names of DDS. Ports: `clk`, `rst_n`, those of the PHY; `publish0` .., `receive0` ..,
+    `room`, as `Participant` has them. With `counters`, `drop_reason` and `drop_count` as `EthernetUdp` has them. What user
+    logic does is in the domain `node`, which is that of `clk`.
     """
 
     def __init__(
@@ -133,7 +135,12 @@ class RosCore(wiring.Component):
         self._switch = PortSwitch((0, 0, 0))
         self._timers = Timers(clk_hz)
         self._payloads = fragments * 1480
-        blocks = (("mac", self._mac), ("stack", self._stack), ("udp", self._switch), ("rtps", self._participant))
+        blocks = (
+            ("mac", self._mac),
+            ("stack", self._stack),
+            ("udp", self._switch),
+            ("rtps", self._participant),
+        )
         self._drops = {
             f"{part}_{name.removeprefix('drop_')}".removeprefix("stack_"): getattr(block, name)
             for part, block in blocks
@@ -202,7 +209,9 @@ class RosCore(wiring.Component):
                 addresses.mac.eq(int.from_bytes(bytes.fromhex(identity.mac.replace(":", "")), "little")),
                 addresses.ip.eq(int.from_bytes(interface.ip.packed, "little")),
                 addresses.mask.eq(int.from_bytes(interface.netmask.packed, "little")),
-                addresses.gateway.eq(int.from_bytes(ipaddress.IPv4Address(identity.gateway).packed, "little")),
+                addresses.gateway.eq(
+                    int.from_bytes(ipaddress.IPv4Address(identity.gateway).packed, "little")
+                ),
             ]
         m.d.comb += [
             self.phy_rst_n.eq(phy_reset.phy_rst_n),

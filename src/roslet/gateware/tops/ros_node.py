@@ -70,10 +70,11 @@ class Subscribe(_Topic):
 class RosNode(wiring.Component):
     """The node `name` with these topics.
 
-    `domain`, `mac`, `address` with its prefix length, and so on as `Identity` has them; what else `RosCore` takes may follow.
+    `domain`, `mac`, `address` with its prefix length, and so on as `Identity` has them; what else `RosCore` takes may
+    follow.
 
-    Ports: those of `RosCore`'s pins, and for each topic one with its name: a stream of `message_layout`, in for those that are
-    published, out for the others. With `flat` it is a port for each field (`Flat`; `texts` documents them), for Verilog.
+    Ports: those of `RosCore`'s pins, and for each topic one with its name: a stream of `message_layout`, in for those that
+    are published, out for the others. With `flat` it is a port for each field (`Flat`; `texts` documents them), for Verilog.
     All is in the domain of `clk`.
     """
 
@@ -114,7 +115,10 @@ class RosNode(wiring.Component):
             )
 
         self.core = RosCore(
-            identity, [local(one) for one in self._publishers], [local(one) for one in self._subscribers], **core
+            identity,
+            [local(one) for one in self._publishers],
+            [local(one) for one in self._subscribers],
+            **core,
         )
         self._codecs: dict[str, Any] = {
             **{one.port_name: Serializer(self._plans[one.port_name]) for one in self._publishers},
@@ -168,15 +172,17 @@ class RosNode(wiring.Component):
             m.submodules[port] = codec = self._codecs[port]
             connect(m, codec.o, getattr(core, f"publish{n}"))
             self._outside(m, port, codec.i, gives=False)
-        for n, topic in enumerate(self._subscribers):
-            port = topic.port_name
+        for n, subscriber in enumerate(self._subscribers):
+            port = subscriber.port_name
             m.submodules[port] = codec = self._codecs[port]
             receive = getattr(core, f"receive{n}")
             # CDR in either byte order; what is in another representation has a bad end.
             other = receive.meta.representation[1:] != 0
             m.d.comb += [
                 codec.i.stream.payload.eq(receive.stream.payload),
-                codec.i.stream.payload.bad.eq(receive.stream.payload.bad | (receive.stream.payload.end & other)),
+                codec.i.stream.payload.bad.eq(
+                    receive.stream.payload.bad | (receive.stream.payload.end & other)
+                ),
                 codec.i.stream.valid.eq(receive.stream.valid),
                 receive.stream.ready.eq(codec.i.stream.ready),
                 codec.i.meta.big.eq(~receive.meta.representation[0]),
@@ -202,4 +208,3 @@ class RosNode(wiring.Component):
             if name not in "io":
                 inside, outside = getattr(block, name), getattr(self, name)
                 m.d.comb += outside.eq(inside) if member.flow == Out else inside.eq(outside)
-

@@ -1,4 +1,4 @@
-"""An ordinary rclpy node: peer_rclpy.py NAME SECONDS. Subscribes to `count`, publishes `shown`, and prints what it sees."""
+"""An ordinary rclpy node: gates_rclpy.py NAME SECONDS. Subscribes to `count`, publishes `shown`, and prints what it sees."""
 
 import json
 import signal

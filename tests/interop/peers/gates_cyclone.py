@@ -1,4 +1,4 @@
-"""A CycloneDDS peer: peer_cyclone.py NAME SECONDS. Reads `rt/count`, writes `rt/shown`, and prints what it sees."""
+"""A CycloneDDS peer: gates_cyclone.py NAME SECONDS. Reads `rt/count`, writes `rt/shown`, and prints what it sees."""
 
 import json
 import signal
