@@ -15,15 +15,16 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "src"))
 
 from roslet.engine.ros2 import context as contexts
-from roslet.engine.ros2 import discovery_info, services
+from roslet.engine.ros2 import services
 from roslet.engine.ros2.context import Context
-from roslet.engine.ros2.discovery_info import NodeEntities, ParticipantEntities
 from roslet.engine.ros2.reasons import REASONS
 from roslet.engine.ros2.services import ServiceClient, ServiceServer
 from roslet.engine.rtps import events
 from roslet.engine.rtps import reasons as rtps
 from roslet.engine.rtps.participant import Participant
 from roslet.engine.rtps.reader import WriterProxy
+from roslet.wire import discovery_info
+from roslet.wire.discovery_info import NodeEntities, ParticipantEntities
 from roslet.wire.rtps import participant_data, qos
 from roslet.wire.rtps.data import FLAG_D, Data
 from roslet.wire.rtps.endpoint_data import EndpointData
