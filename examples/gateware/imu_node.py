@@ -3,7 +3,6 @@
 
 The sensor is made up: its rates and accelerations count up, so that whoever receives them sees whether any is missing.
 
-    roslet gateware sim imu-node
     roslet gateware build imu-node --target ecp5 --output out
 """
 

@@ -1,7 +1,6 @@
 """The echo-back node of the mROS paper, in gates: what comes on `ping` goes out on `pong`. Its type is one of the user's
 own.
 
-roslet gateware sim typed-echo
 roslet gateware build typed-echo --target ecp5 --output out
 """
 
