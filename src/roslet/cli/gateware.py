@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import pathlib
 import runpy
 from typing import TYPE_CHECKING, Any
@@ -13,7 +14,7 @@ from roslet.cli.output import emit_json, table
 if TYPE_CHECKING:
     import argparse
 
-TOP = "ethernet-udp"
+TOP, ROS = "ethernet-udp", "ros2-ether"
 TARGETS = ("verilog", "ecp5", "ice40", "arty-a7")
 PHY_MHZ = {"mii": 25.0, "gmii": 125.0}  # IEEE 802.3, 22.2.2.1 and 35.2.2.1
 SETTINGS = (
@@ -28,6 +29,29 @@ SETTINGS = (
     "ros2_rx_udp_port",
 )
 """Inputs of the top that are constants in use: packages have not as many pins."""
+ROS_SETTINGS = (
+    *(
+        f"ros2_{name}{end}"
+        for end in ("", "_len")
+        for name in ("node_name", "pub_topic_name", "sub_topic_name")
+    ),
+    *(f"ros2_{name}{end}" for end in ("", "_len") for name in ("pub_topic_type_name", "sub_topic_type_name")),
+    *(
+        "ros2_node_udp_port",
+        "ros2_port_num_seed",
+        "ros2_guid_prefix",
+        "ros2_pub_app_data",
+        "ros2_pub_app_data_len",
+    ),
+    "prescaler_div",
+    "tx_interval_count",
+    *(
+        f"tx_period_sedp_{kind}_count"
+        for kind in ("pub_wr", "sub_wr", "pub_hb", "sub_hb", "pub_an", "sub_an")
+    ),
+    *("tx_period_spdp_wr_count", "tx_period_app_wr_count"),
+)
+"""The same of the larger one."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -37,7 +61,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         "build",
         run_build,
         "write a design as Verilog, or place and route it",
-        "roslet gateware build --target verilog --output out\n"
+        "roslet gateware build --top ros2_ether --target verilog --output out\n"
+        "roslet gateware build --top ros2_ether --config my_headers --target verilog --output out\n"
         "roslet gateware build udp-tx-rx --target ecp5 --output out\n"
         "roslet gateware build udp-tx-rx --target arty-a7 --output out && vivado -mode batch -source out/arty_a7.tcl",
         "json",
@@ -45,13 +70,23 @@ def add(parser: argparse.ArgumentParser) -> None:
     build.description = (
         "Write a design as Verilog, or synthesize, place and route it, and report LUTs, flip-flops, block RAM and the\n"
         "frequency of each clock. The exit code is 1 where a clock is slower than it should be.\n\n"
-        "DESIGN is ethernet-udp, the node of which user logic sends and receives UDP datagrams, or an example with\n"
-        "such logic, as udp-tx-rx. Pins of ecp5 and ice40 are arbitrary; ethernet-udp's addresses and other settings\n"
-        "come there from a shift register, since no package has so many pins. For arty-a7 a Vivado project is written,\n"
-        "which nobody has run yet."
+        "DESIGN is ethernet-udp, the node of which user logic sends and receives UDP datagrams; ros2-ether, which is a\n"
+        "ROS 2 node, too, with the module, ports, parameters and headers of the ROS2rapper manual; or an example with user\n"
+        "logic, as udp-tx-rx. Pins of ecp5 and ice40 are arbitrary; addresses and other settings of the first two come\n"
+        "there from a shift register, since no package has so many pins. For arty-a7 a Vivado project is written, which\n"
+        "nobody has run yet."
     )
     build.add_argument(
-        "design", nargs="?", default=TOP, metavar="DESIGN", help=f"{TOP} (default) or an example"
+        "design", nargs="?", default=TOP, metavar="DESIGN", help=f"{TOP} (default), {ROS} or an example"
+    )
+    build.add_argument("--top", metavar="DESIGN", help="the same, as an option")
+    build.add_argument(
+        "--config",
+        metavar="PATH",
+        type=pathlib.Path,
+        action="append",
+        default=[],
+        help="a header of the manual, or a folder of them, whose constants are those of the design (may be repeated)",
     )
     build.add_argument("--target", choices=TARGETS, required=True, help="what for")
     build.add_argument("--output", metavar="DIR", required=True, type=pathlib.Path, help="where the files go")
@@ -82,36 +117,49 @@ def load(name: str) -> dict[str, Any]:
     """What the module of an example defines. Raises CommandError."""
     found = examples()
     if name not in found:
-        raise CommandError(f"there is no design {name}: there are {', '.join([TOP, *found])}")
+        raise CommandError(f"there is no design {name}: there are {', '.join([TOP, ROS, *found])}")
     return runpy.run_path(str(found[name]))
 
 
 def run_build(arguments: argparse.Namespace) -> int:
     """`roslet gateware build`."""
-    name, target = arguments.design.replace("_", "-"), arguments.target
-    if target == "arty-a7" and (arguments.phy != "mii" or name == TOP):
+    name, target = (arguments.top or arguments.design).replace("_", "-"), arguments.target
+    if arguments.config and name not in (TOP, ROS):
+        raise CommandError(f"an example has constants of its own: --config is for {TOP} and {ROS}")
+    if target == "arty-a7" and (arguments.phy != "mii" or name in (TOP, ROS)):
         raise CommandError("the Arty A7 has a PHY with MII, and takes an example with LEDs: udp-tx-rx")
     mhz = arguments.frequency or _default_mhz(target, arguments.phy)
     if target == "arty-a7" and mhz != 100:
         raise CommandError("the Arty A7 has a clock of 100 MHz")
     try:
-        from roslet.gateware.config import Config, ros2_config_vh, ros2_ether_config_vh
         from roslet.gateware.tops.ethernet_udp import EthernetUdp
+        from roslet.gateware.tops.ros2_ether import Ros2Ether
+        from roslet.gateware.verilog import HEADERS, read_headers, write_ros2_ether
     except ModuleNotFoundError as error:
         raise CommandError(f"{error.name} is not installed: pip install 'roslet[gateware]'") from None
-    hz = round(mhz * 1e6)
-    config = Config(ros2clk_hz=hz)
-    top = EthernetUdp(config, arguments.phy) if name == TOP else load(name)["Design"](hz, phy=arguments.phy)
+    try:
+        config = read_headers(arguments.config)
+    except (ValueError, OSError) as error:
+        raise CommandError(str(error)) from None
+    if arguments.frequency or not arguments.config:
+        config = dataclasses.replace(config, ros2clk_hz=round(mhz * 1e6))
+    mhz, hz = config.ros2clk_hz / 1e6, config.ros2clk_hz
+    if name in (TOP, ROS):
+        top: Any = (EthernetUdp if name == TOP else Ros2Ether)(config, arguments.phy)
+    else:
+        top = load(name)["Design"](hz, phy=arguments.phy)
     identifier, folder = name.replace("-", "_"), arguments.output
     folder.mkdir(parents=True, exist_ok=True)
     result: dict[str, Any] = {"design": name, "target": target, "phy": arguments.phy}
     if target == "verilog":
         from roslet.gateware.toolchain import write_verilog
 
-        headers = {"ros2_config.vh": ros2_config_vh, "ros2_ether_config.vh": ros2_ether_config_vh}
-        for file, text in headers.items():
-            (folder / file).write_text(text(config), encoding="utf-8")
-        result["files"] = [write_verilog(top, identifier, folder).name, *headers]
+        if name == ROS:
+            result["files"] = write_ros2_ether(top, folder)
+        else:
+            for file, text in HEADERS.items():
+                (folder / file).write_text(text(config), encoding="utf-8")
+            result["files"] = [write_verilog(top, identifier, folder).name, *HEADERS]
     elif target == "arty-a7":
         from roslet.gateware.boards import arty_a7
 
@@ -121,8 +169,8 @@ def run_build(arguments: argparse.Namespace) -> int:
         from roslet.gateware.boards.pinned import Pinned
 
         chip = {"ecp5": lattice.ECP5, "ice40": lattice.ICE40}[target]
-        if name == TOP:
-            top = Pinned(top, SETTINGS)
+        if name in (TOP, ROS):
+            top = Pinned(top, SETTINGS if name == TOP else (*SETTINGS, *ROS_SETTINGS))
             result["settings_flip_flops"] = top.bits
         phy_mhz = PHY_MHZ[arguments.phy]
         goals = {"clk": mhz, "phy_rx_clk": phy_mhz, "phy_tx_clk": phy_mhz}

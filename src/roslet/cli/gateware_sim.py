@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from roslet.sim.model import Model
     from roslet.sim.wire import GatewareStation, Wire
 
-EXAMPLES = {"udp-tx-rx": "udp_tx_rx.py"}
+EXAMPLES = {"udp-tx-rx": "udp_tx_rx.py", "topic-pub-sub": "topic_pub_sub.py"}
 # The design's clock, in its own time: as slow as 100 Mbit/s allows without a pause.
 CLOCK, PHY_CLOCK = 50e6, 25e6
 # Seconds of the wire in a second of the design: so 200,000 cycles a second, which one processor simulates in real time.
@@ -38,14 +38,15 @@ def add(group: Group) -> None:
         "sim",
         run,
         "simulate a gateware example at the pins of its PHY",
-        "roslet gateware sim udp-tx-rx\nroslet gateware sim udp-tx-rx --seconds 20 --pcap wire.pcap --loss 0.1\n"
+        "roslet gateware sim udp-tx-rx\nroslet gateware sim topic-pub-sub\n"
+        "roslet gateware sim udp-tx-rx --seconds 20 --pcap wire.pcap --loss 0.1\n"
         "roslet gateware sim udp-tx-rx --tap tap0   # as root; then: ping 192.168.1.100",
         "json",
     )
     sim.description = (
-        "Simulate a gateware example at the pins of its PHY.\n\nThe design is compiled, which takes half a minute the first "
-        f"time. On the wire with it is a software host, {HOST}, which pings it and sends it datagrams; or, with --tap, the "
-        "Linux kernel."
+        "Simulate a gateware example at the pins of its PHY.\n\nThe design is compiled, which takes half a minute to two "
+        f"the first time. On the wire with it is a software host, {HOST}, which pings it and sends it datagrams, or is a "
+        "ROS 2 node and exchanges messages with it; or, with --tap, the Linux kernel, and whatever ROS 2 runs there."
     )
     sim.add_argument("example", choices=sorted(EXAMPLES), metavar="EXAMPLE", help=", ".join(sorted(EXAMPLES)))
     sim.add_argument(
@@ -80,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
     if not arguments.json:
         note("compiling the design, unless that was done before")
     with Model(top) as model:
-        session = Session(arguments, model, top.reasons)
+        session = _session(arguments.example)(arguments, model, top.reasons)
         try:
             session.run(arguments.seconds)
         except KeyboardInterrupt:
@@ -89,6 +90,14 @@ def run(arguments: argparse.Namespace) -> int:
             session.close()
         session.report()
     return OK
+
+
+def _session(example: str) -> type[Session]:
+    if example == "topic-pub-sub":
+        from roslet.cli.gateware_ros import RosSession
+
+        return RosSession
+    return Session
 
 
 def dropped(model: Model, reasons: dict[str, int]) -> dict[str, int]:
@@ -113,6 +122,7 @@ class Session:
         from roslet.sim.wire import Wire
 
         self._json = arguments.json
+        self._tap = arguments.tap
         self._reasons = reasons
         self._model = model
         self._host: Host | None = None
@@ -181,6 +191,11 @@ class Session:
             self._leds = leds
             shown = "  ".join(f"LD{4 + n} {'*' if leds >> n & 1 else '.'}" for n in range(4))
             self._tell(f"LEDs  {shown}", leds=leds)
+        self._hear()
+        return False
+
+    def _hear(self) -> None:
+        """Tell what the software has received."""
         if self._host is not None and self._endpoint is not None:
             while (got := self._endpoint.receive()) is not None:
                 self.counts["texts"] += 1
@@ -191,7 +206,6 @@ class Session:
                     self.counts["pings answered"] += 1
                     own = seconds / self.wire.factor
                     self._tell(f"ping answered in {own * 1e6:.1f} us of the design's time", ping=own)
-        return False
 
     def _ask(self) -> None:
         if self._host is None or self._endpoint is None:

@@ -65,18 +65,26 @@ def run(tool: str, arguments: list[str], folder: pathlib.Path) -> None:
         raise ToolFailed(f"{tool} failed, see {log}:\n" + ("\n".join(errors) or said))
 
 
-def write_rtlil(top: Any, name: str, folder: pathlib.Path) -> None:
-    """Write `name`.il, without the places in the source: the same design gives the same text wherever it is."""
+def write_rtlil(top: Any, name: str, folder: pathlib.Path) -> str:
+    """Write `name`.il, without the places in the source: the same design gives the same text wherever it is.
+
+    Beside it go the files in `top.verilog`, where it has that: the modules of its instances. Returns what has Yosys read
+    all.
+    """
     from amaranth.back import rtlil
 
     text = rtlil.convert(top, name=name, emit_src=False)
     (folder / f"{name}.il").write_text(text, encoding="utf-8")
+    script = f"read_rtlil {name}.il"
+    for path in getattr(top, "verilog", ()):
+        shutil.copyfile(path, folder / f"user_{pathlib.Path(path).name}")
+        script += f"; read_verilog -sv user_{pathlib.Path(path).name}"
+    return f"{script}; hierarchy -top {name}" if ";" in script else script
 
 
 def write_verilog(top: Any, name: str, folder: pathlib.Path) -> pathlib.Path:
     """Write `name`.v, a module `name` with the ports of `top`; and `name`.il. The same for every run of one Yosys."""
-    write_rtlil(top, name, folder)
-    script = f"read_rtlil {name}.il; proc; memory_collect; write_verilog -noattr {name}.v"
+    script = f"{write_rtlil(top, name, folder)}; proc; memory_collect; write_verilog -noattr {name}.v"
     run("yosys", ["-q", "-p", script], folder)
     return folder / f"{name}.v"
 

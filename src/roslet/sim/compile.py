@@ -23,7 +23,8 @@ from roslet.errors import RosletError
 HERE = pathlib.Path(__file__).resolve().parent
 DRIVER = HERE / "driver.cc"
 SCRIPT = (
-    "read_rtlil design.il; hierarchy -check -top top; proc; flatten; opt; opt_clean; write_cxxrtl design.cc"
+    "read_rtlil design.il; READ_VERILOG; hierarchy -check -top top; "
+    "proc; flatten; opt; opt_clean; write_cxxrtl design.cc"
 )
 FLAGS = ("-std=c++17", "-O2", "-fPIC", "-shared", "-DNDEBUG", "-w")
 
@@ -96,6 +97,7 @@ def cold(design: str) -> str:
 
 def build(top: Any) -> pathlib.Path:
     """The shared library of a design, for `model.Model`. `top` is a component; inputs that are clocks are plain inputs.
+    Where it has an attribute `verilog`, those files have the modules of its instances.
 
     Raises CompileFailed.
     """
@@ -103,8 +105,10 @@ def build(top: Any) -> pathlib.Path:
     yosys, headers, version = _yosys()
     compiler = os.environ.get("CXX", "g++")
     machine = _run([compiler, "-dumpfullversion", "-dumpmachine"], HERE)
+    sources = [pathlib.Path(path).read_text(encoding="utf-8") for path in getattr(top, "verilog", ())]
     parts = (
         text,
+        *sources,
         DRIVER.read_text(encoding="utf-8"),
         pathlib.Path(__file__).read_text(encoding="utf-8"),
         version,
@@ -120,7 +124,10 @@ def build(top: Any) -> pathlib.Path:
     work = pathlib.Path(tempfile.mkdtemp(prefix="building-", dir=cache()))
     try:
         (work / "design.il").write_text(text, encoding="utf-8")
-        _run([*yosys, "-q", "-p", SCRIPT], work)
+        for n, source in enumerate(sources):
+            (work / f"source{n}.v").write_text(source, encoding="utf-8")
+        read = "; ".join(f"read_verilog -sv source{n}.v" for n in range(len(sources)))
+        _run([*yosys, "-q", "-p", SCRIPT.replace("READ_VERILOG; ", f"{read}; " if read else "")], work)
         design = (work / "design.cc").read_text(encoding="utf-8")
         (work / "edges.inc").write_text(edges(design), encoding="utf-8")
         (work / "design.cc").write_text(cold(design), encoding="utf-8")

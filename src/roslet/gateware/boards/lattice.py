@@ -68,9 +68,9 @@ def build(
     `met`, whether all are as fast as they should be. Raises ToolMissing, ToolFailed; what does not fit is one of these.
     """
     toolchain.command(chip.placer)  # before the minutes that lie ahead
-    toolchain.write_rtlil(top, name, folder)
+    read = toolchain.write_rtlil(top, name, folder)
     netlist, report = f"{name}.json", f"{name}.report.json"
-    script = f"read_rtlil {name}.il; {chip.synthesis} -top {name} -json {netlist}"
+    script = f"{read}; {chip.synthesis} -top {name} -json {netlist}"
     toolchain.run("yosys", ["-q", "-p", script], folder)
     constraints = f"{name}.{chip.constraints}"
     lines = [chip.frequency.format(port=port, mhz=mhz) for port, mhz in goals.items()]
