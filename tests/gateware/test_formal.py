@@ -6,7 +6,7 @@ import pytest
 
 from gateware import formal
 from gateware.formal import Spec
-from gateware.proofs import arbiter, checksum, fifo, header, mac, raw_udp, reassembly
+from gateware.proofs import arbiter, checksum, fifo, header, mac, raw_udp, reassembly, rtps
 
 SPECS = (
     *arbiter.SPECS,
@@ -16,6 +16,7 @@ SPECS = (
     *mac.SPECS,
     *raw_udp.SPECS,
     *reassembly.SPECS,
+    *rtps.SPECS,
 )
 
 
