@@ -167,7 +167,7 @@ class SubmessagesSpec(Spec):
     bugs = (
         Bug("user.steady", "m.d.comb += i.ready.eq(user.ready)", "m.d.comb += i.ready.eq(1)"),
         Bug("user.bad_only_at_end", "user.payload.bad.eq(i.payload.bad)", "user.payload.bad.eq(i.payload.bad | (word == 9))"),
-        Bug("user.meta_steady", "self.user.meta.representation.eq(Cat(word[8:16], word[:8])),", ""),
+        Bug("user.meta_steady", "self.user.meta.reader.eq(info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8])", "self.user.meta.reader.eq(self.peers.data)"),
         Bug("user", "user.payload.bad.eq(i.payload.bad)", "user.payload.bad.eq(i.payload.bad & (word == 0))"),
         Bug("word", "self.user.stream.payload.data.eq(word)", "self.user.stream.payload.data.eq(number)"),
         Bug("kept", "                with m.If(good):\n                    m.next = \"WRITE LOW\"\n", "                with m.If(ended):\n                    m.next = \"WRITE LOW\"\n"),
