@@ -28,8 +28,8 @@ class Discovery(wiring.Component):
     `due_proxy`, something must be sent for it; `greet` with `greet_slot`, this participant must hear of us, as it is new.
 
     - A participant that announces itself has the first free slot, with proxies of its discovery endpoints, from which all
-      is wanted and to which all is sent. Its next announcements move it. It goes, and its endpoints with it, when it says
-      so or when nothing good was heard of it for its lease, and a second or two.
+      is wanted and to which all is sent. Its next announcements, in other datagrams, move it. It goes, and its endpoints
+      with it, when it says so or when nothing good was heard of it for its lease, and a second or two.
     - An endpoint whose topic and type are one of ours, and whose QoS agrees, gets a proxy; one that we know moves, or goes
       where it agrees no more. It goes when it is disposed. Our endpoints' QoS other than reliability and durability are the
       defaults.
@@ -82,6 +82,11 @@ class Discovery(wiring.Component):
         addressed, before = Signal.like(step), Signal.like(step)  # what the memory gives next, and now
         heard = Signal(peers.participants)
         ticked, sweeping = Signal(), Signal()
+        arrived = Signal()  # in this datagram somebody, who is not known by its walker yet
+        with m.If(self.idle):
+            m.d.sync += arrived.eq(0)
+        with m.If(self.greet):
+            m.d.sync += arrived.eq(1)
         local, agreed = Signal(max(1, self._own.local_bits)), Signal()
         m.d.sync += [addressed.eq(step), before.eq(addressed)]
         with m.If(self.tick):
@@ -143,7 +148,7 @@ class Discovery(wiring.Component):
             with m.State("PROCEED"):
                 m.d.comb += parameters.proceed.eq(1)
                 m.next = "IDLE"
-            self._participant(m, read, write, address, slot, step, before, heard, free)
+            self._participant(m, read, write, address, slot, step, before, heard, free, arrived)
             with m.State("KEY"):
                 m.next = "ENTITY"
             with m.State("ENTITY"):
@@ -222,6 +227,7 @@ class Discovery(wiring.Component):
         before: Value,
         heard: Value,
         free: Any,
+        arrived: Value,
     ) -> None:
         peers, meta = self._peers, self.i.meta
         fresh = Signal()
@@ -236,6 +242,8 @@ class Discovery(wiring.Component):
                 m.d.comb += self.drop_incomplete.eq(1)
             with m.Elif(~meta.known & self.alive.all()):
                 m.d.comb += self.drop_full.eq(1)
+            with m.Elif(~meta.known & arrived):
+                pass  # most likely it says so twice
             with m.Else():
                 m.next = "COPY"
                 with m.If(~meta.known):

@@ -114,6 +114,8 @@ class Walker(wiring.Component):
                 little = word[8]
                 length = Mux(little, word[16:32], Cat(word[24:32], word[16:24]))
                 m.d.sync += at.eq(0)
+                # It may have said before that it departs.
+                m.d.sync += is_known.eq(is_known & self.alive.bit_select(slot, 1))
                 with m.If(i.valid & i.payload.end):
                     m.next = "END"
                 with m.Elif(i.valid):
