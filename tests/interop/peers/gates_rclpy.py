@@ -29,6 +29,7 @@ while time.monotonic() < ends and not stopped:
             "got": got,
             "nodes": sorted(name for name, _ in node.get_node_names_and_namespaces()),
             "subscribers": publisher.get_subscription_count(),
+            "own": [str(info.topic_type_hash) for info in node.get_publishers_info_by_topic("shown")],
             "hashes": [str(info.topic_type_hash) for info in infos],
             "publishers": [info.node_name for info in infos],
         }
