@@ -124,7 +124,7 @@ def assume_steady(m: Module, value: Value, domain: str = "sync") -> None:
 
 
 class FrameRules(Elaboratable):
-    """The rules of `FrameSignature` of one port, as properties `kind`, Assert or Assume.
+    """The rules of `FrameSignature` of one port, or of `MessageSignature`, as properties `kind`, Assert or Assume.
 
     `steady`, of a port that `waits`: what was valid and not taken is there still, unchanged. `bad_only_at_end`.
     `meta_steady`: from a frame's first valid item until its end is taken. For further properties: `transfer`, `ended` (an
@@ -158,6 +158,9 @@ class FrameRules(Elaboratable):
         sync += [held.eq(stream.valid & ~stream.ready), before.item.eq(item)]
         same = (before.item.end == item.end) & (item.end | (before.item.data == item.data))
         same &= before.item.bad == item.bad
+        if "padding" in item.shape().members:
+            same &= before.item.padding == item.padding
+            m.d.comb += rule(~(stream.valid & (item.padding != 0) & ~item.end), "bad_only_at_end")
         if self._waits:
             m.d.comb += rule(~held | (stream.valid & same), "steady")
         if self.meta is not None:

@@ -6,7 +6,7 @@ import pytest
 
 from gateware import formal
 from gateware.formal import Spec
-from gateware.proofs import arbiter, arp_cache, checksum, fifo, header, mac, raw_udp, reassembly
+from gateware.proofs import arbiter, arp_cache, checksum, fifo, header, mac, raw_udp, reassembly, rtps
 
 SPECS = (
     *arbiter.SPECS,
@@ -17,6 +17,7 @@ SPECS = (
     *mac.SPECS,
     *raw_udp.SPECS,
     *reassembly.SPECS,
+    *rtps.SPECS,
 )
 
 

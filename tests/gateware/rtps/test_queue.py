@@ -99,7 +99,7 @@ def test_a_datagram_that_is_too_long_ends_badly_and_is_counted_while_nobody_read
         bytes(3 * room),
         Bad(3 * room),
         b"\1",
-        bytes(room + 4),
+        bytes(room + 5),
         b"",
     ]
     bench = WordBench(DatagramQueue(longest), stalls=0)
@@ -126,6 +126,7 @@ def test_a_datagram_that_is_too_long_ends_badly_and_is_counted_while_nobody_read
     bench.run()
     assert [bad for _, bad in got] == [False, True, False, True, True, False, True, False]
     assert [count for (count, bad) in got if not bad] == [room // 4, (longest + 3) // 4, 1, 0]
+    assert max(count for count, _ in got) == room // 4  # nothing of what is behind what did not fit
     assert bench.counts["drop_long"] == 3
 
 

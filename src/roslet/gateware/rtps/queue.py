@@ -72,7 +72,7 @@ class DatagramQueue(wiring.Component):
             m.d.sync += self.known.eq(0)
         with m.Elif(i.valid & i.payload.end):
             with m.If(at != 0):
-                m.d.comb += [item.data.eq(held), words.w_en.eq(1)]
+                m.d.comb += [item.data.eq(held), words.w_en.eq(~long)]
                 m.d.sync += [at.eq(0), last.eq(at)]
             with m.Else():
                 bad = i.payload.bad | long

@@ -1,0 +1,384 @@
+"""The RTPS blocks: nothing is longer or shorter than it says, nothing bad is taken for good, nobody waits for ever."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from amaranth.hdl import Assert, Assume, Const, Cover, Module, Mux, Signal, Value
+
+from gateware.formal import Bug, Spec, assume_steady
+from roslet.gateware.rtps import composer, outbox, queue, submessages, walker
+from roslet.gateware.rtps.rom import Op
+from roslet.gateware.rtps.tables import Local, OwnMap, PeerMap
+from roslet.wire.rtps.submessage import GAP
+
+
+def waits(m: Module, stream: Any, bound: int, free: Value, name: str) -> None:
+    """What is valid at `stream` is taken within `bound` cycles in which `free` is high."""
+    count = Signal(range(bound + 2))
+    with m.If(~stream.valid | stream.ready):
+        m.d.sync += count.eq(0)
+    with m.Elif(free):
+        m.d.sync += count.eq(count + 1)
+    m.d.comb += Assert(count <= bound, name)
+
+
+LONGEST = 4
+
+
+class QueueSpec(Spec):
+    """`octet`: the nth octet of a datagram leaves at its place, for any n. `words`: a good one has as many words as
+    it needs and says how many octets are too many. `verdict`: an end is good only if it came good; `kept`: a good one stays
+    so if it is not too long. `known`: whenever an end can be seen, its verdict is said already, and stays.
+    """
+
+    module = queue
+    quick, deep = 13, 18
+    bugs = (
+        Bug("o.steady", "with m.If(~o.valid | o.ready):", "with m.If(1):"),
+        Bug(
+            "o.bad_only_at_end",
+            "item.data.eq(held), words.w_en.eq(~long)",
+            "item.data.eq(held), item.bad.eq(1), words.w_en.eq(1)",
+        ),
+        Bug("octet", "item.data.eq(Cat(held, octet))", "item.data.eq(Cat(held[8:], octet, octet))"),
+        Bug("words", "Const(0, 2) - last", "last"),
+        Bug("verdict", "bad = i.payload.bad | long", "bad = long"),
+        Bug(
+            "kept",
+            "room = count != self._depth - SPARE",
+            "room = count != self._depth - SPARE - 1",
+        ),
+        Bug("known", "self.good.eq(~bad)", "self.good.eq(1)"),
+    )
+
+    def block(self) -> Any:
+        return self.gates.DatagramQueue(LONGEST)
+
+    def properties(self, m: Module) -> None:
+        dut = self.dut
+        rules, given = self.assume(m, "i"), self.check(m, "o")
+        i, o = dut.i.stream, dut.o.stream
+        n = self.steady(m, 3, "n")
+        octet, count, words = Signal(8), Signal(5), Signal(4)
+        bad, over = Signal(), Signal()
+        with m.If(rules.transfer & ~i.payload.end):
+            m.d.sync += count.eq(count + ~count.all())
+            with m.If(count == n):
+                m.d.sync += octet.eq(i.payload.data)
+        with m.If(rules.ended):
+            m.d.sync += [bad.eq(i.payload.bad), over.eq(1)]
+        with m.If(given.transfer & ~o.payload.end):
+            m.d.sync += words.eq(words + ~words.all())
+        with m.If(given.ended):
+            m.d.sync += [words.eq(0), count.eq(0), over.eq(0)]
+        before, promised = Signal(), Signal()
+        m.d.sync += [before.eq(dut.known & ~given.ended), promised.eq(dut.good)]
+        at_end = o.valid & o.payload.end
+        good = at_end & ~o.payload.bad
+        lane = o.payload.data.word_select(n[:2], 8)
+        here = o.valid & ~o.payload.end & (words == n[2:]) & (n < count)
+        m.d.comb += [
+            Assert(~here | (lane == octet), "octet"),
+            Assert(~good | ((words == (count + 3)[2:]) & (o.payload.padding == (-count)[:2])), "words"),
+            Assert(~good | (over & ~bad & ((words << 2) >= count)), "verdict"),
+            Assert(~at_end | ~o.payload.bad | bad | (count > LONGEST), "kept"),
+            Assert(~at_end | (dut.known & (dut.good == ~o.payload.bad)), "known"),
+            Assert(~before | (dut.known & (dut.good == promised)), "known"),
+            Cover(at_end & o.payload.bad & ~bad, "long"),
+            Cover(good & (words == 1) & (o.payload.padding == 1), "three"),
+        ]
+
+
+SKIPPED = """with m.If((left == 0) & ~to_end):
+                    m.next = "{}"
+                with m.Elif(i.valid & i.payload.end):"""
+
+
+class WalkerSpec(Spec):
+    """`length`: a body has no more words than its header says, and at a good end as many. `data`: they are the message's.
+    `good`: a good end is given only of a datagram that is known to be good, and whose octets are all there. `heard`:
+    only then is anybody heard. `taken`: whatever comes is taken within a few cycles, and so is the end of a datagram,
+    wherever it comes. `idle`: then the walker is.
+
+    Prefixes have one word here. The memories hold anything, in each cycle something else.
+    """
+
+    module = walker
+    quick, deep = 15, 24
+    scale = (("_PREFIX_WORDS = 3", "_PREFIX_WORDS = 1"),)
+    bugs = (
+        Bug("o.steady", "o.valid.eq(i.valid), i.ready.eq(o.ready)", "o.valid.eq(i.valid), i.ready.eq(1)"),
+        Bug(
+            "o.bad_only_at_end",
+            "o.payload.data.eq(word),",
+            "o.payload.data.eq(word), o.payload.bad.eq(i.payload.bad | (word == 5)),",
+        ),
+        Bug("o.meta_steady", "self.o.meta.known.eq(is_known)", "self.o.meta.known.eq(i.valid)"),
+        Bug("length", "left = Signal(15)", "left = Signal(14)"),
+        Bug("data", "o.payload.data.eq(word),", "o.payload.data.eq(word | 1),"),
+        Bug("good", "o.payload.bad.eq(~self.good | missing)", "o.payload.bad.eq(~self.good)"),
+        Bug("heard", "~o.payload.bad & is_known", "is_known"),
+        Bug(
+            "taken",
+            SKIPPED.format("SUBMESSAGE"),
+            SKIPPED.format("SKIP"),
+        ),
+        Bug(
+            "idle",
+            'reason.eq(~i.payload.bad)\n                        m.next = "START"',
+            "reason.eq(~i.payload.bad)\n                        m.next = state",
+        ),
+    )
+
+    def block(self) -> Any:
+        return self.gates.Walker(PeerMap(1, 1), OwnMap([], [Local("t", "T")]))
+
+    def properties(self, m: Module) -> None:
+        dut = self.dut
+        rules, given = self.assume(m, "i"), self.check(m, "o")
+        i, o = dut.i.stream, dut.o.stream
+        verdict_assumed(m, dut)
+
+        header, count = Signal(32), Signal(4)
+        ended = Signal()
+        word = given.transfer & ~o.payload.end
+        m.d.sync += ended.eq(rules.ended)
+        with m.If(rules.transfer & ~word):
+            m.d.sync += header.eq(i.payload.data)
+        with m.If(word):
+            m.d.sync += count.eq(count + ~count.all())
+        with m.If(given.ended):
+            m.d.sync += count.eq(0)
+        length = Mux(header[8], header[16:32], header[24:32] | header[16:24] << 8)
+        needs = (length + 3) >> 2
+        good = o.valid & o.payload.end & ~o.payload.bad
+        missing = i.payload.end & (i.payload.padding > (-length)[:2])
+        m.d.comb += [
+            Assert(~o.valid | o.payload.end | (length == 0) | (count < needs), "length"),
+            Assert(
+                ~good | (length == 0) | ((count == needs) & (o.payload.padding == (-length)[:2])), "length"
+            ),
+            Assert(~word | (rules.transfer & (o.payload.data == i.payload.data)), "data"),
+            Assert(~good | (dut.known & dut.good & ~((length != 0) & missing)), "good"),
+            Assert(~dut.heard | (given.ended & ~o.payload.bad & dut.o.meta.known), "heard"),
+            Assert(~ended | dut.idle, "idle"),
+            Cover(given.ended & ~o.payload.bad & (count == 2), "body"),
+            Cover(given.ended & o.payload.bad & (count == 1), "cut"),
+        ]
+        waits(m, i, 6, o.ready & dut.known & ~dut.hold, "taken")
+
+
+def verdict_assumed(m: Module, dut: Any) -> None:
+    """`known` and `good` are as `DatagramQueue` has them."""
+    i = dut.i.stream
+    ended = i.valid & i.ready & i.payload.end
+    before, promised = Signal(), Signal()
+    m.d.sync += [before.eq(dut.known & ~ended), promised.eq(dut.good)]
+    m.d.comb += [
+        Assume(~(i.valid & i.payload.end) | (dut.known & (dut.good == ~i.payload.bad)), "verdict"),
+        Assume(~before | (dut.known & (dut.good == promised)), "verdict stays"),
+        Assume(~(i.valid & i.payload.end & i.payload.bad) | (i.payload.padding == 0), "no padding"),
+    ]
+
+
+class SubmessagesSpec(Spec):
+    """`user`: a message of the user's ends well only where the body does, and `word`: is made of its words. `kept`: but
+    for the scratch area, something is written only at a good end: nothing is kept of a datagram that ends badly. `taken`:
+    what comes is taken within some cycles, of all but a GAP, which may take one for each bit."""
+
+    module = submessages
+    quick, deep = 27, 34
+    bugs = (
+        Bug("user.steady", "m.d.comb += i.ready.eq(user.ready)", "m.d.comb += i.ready.eq(1)"),
+        Bug(
+            "user.bad_only_at_end",
+            "user.payload.bad.eq(i.payload.bad)",
+            "user.payload.bad.eq(i.payload.bad | (word == 9))",
+        ),
+        Bug(
+            "user.meta_steady",
+            "self.user.meta.reader.eq(info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8])",
+            "self.user.meta.reader.eq(self.peers.data)",
+        ),
+        Bug("user", "user.payload.bad.eq(i.payload.bad)", "user.payload.bad.eq(i.payload.bad & (word == 0))"),
+        Bug("word", "self.user.stream.payload.data.eq(word)", "self.user.stream.payload.data.eq(number)"),
+        Bug(
+            "kept",
+            '                with m.If(good):\n                    m.next = "WRITE LOW"\n',
+            '                with m.If(ended):\n                    m.next = "WRITE LOW"\n',
+        ),
+        Bug(
+            "taken",
+            'with m.If(~meta.known):\n                    m.next = "FOUND"',
+            'with m.If(~meta.known):\n                    m.next = "FIND"',
+        ),
+    )
+
+    def block(self) -> Any:
+        return self.gates.Submessages(PeerMap(1, 1), OwnMap([], [Local("t", "T")]))
+
+    def properties(self, m: Module) -> None:
+        dut = self.dut
+        self.assume(m, "i")
+        self.check(m, "user")
+        i, user = dut.i.stream, dut.user.stream
+        peers = PeerMap(1, 1)
+        ended = i.valid & i.payload.end
+        good = user.valid & user.payload.end & ~user.payload.bad
+        word = user.valid & ~user.payload.end
+        scratch = dut.write.addr[4:] == peers._scratch >> 4
+        m.d.comb += [
+            Assume(dut.i.meta.id != GAP, "no GAP"),
+            Assert(~good | (ended & ~i.payload.bad), "user"),
+            Assert(~word | (i.valid & ~i.payload.end & (user.payload.data == i.payload.data)), "word"),
+            Assert(~dut.write.en | scratch | (ended & ~i.payload.bad), "kept"),
+            Cover(dut.write.en & ~scratch, "written"),
+        ]
+        waits(m, i, 14, user.ready & dut.discovery.stream.ready, "taken")
+
+
+class OutboxSpec(Spec):
+    """Of datagrams written one after another, each is sent or dropped, in that order: `length`, `where` it goes, and
+    `content`, any octet of any of them. Of their sums nothing is said, and none are made."""
+
+    module = outbox
+    quick, deep = 15, 20
+    scale = (("added.eq(total + pair[:16] + carries[1])", "added.eq(0)"),)
+    bugs = (
+        Bug("o.steady", "o.valid.eq(~asking & found)", "o.valid.eq(~asking & found & ~lookup.mac[0])"),
+        Bug(
+            "o.bad_only_at_end",
+            "o.payload.end.eq(left == 0)",
+            "o.payload.bad.eq(left == 1), o.payload.end.eq(left == 0)",
+        ),
+        Bug("o.meta_steady", "meta.source_port.eq(self.source_port)", "meta.source_port.eq(self.port)"),
+        Bug(
+            "length", "octets.eq(Cat(C(0, 2), read.data[16:30]))", "octets.eq(Cat(C(0, 1), read.data[16:30]))"
+        ),
+        Bug(
+            "where",
+            "write.addr.eq(begin), write.data.eq(self.ip)",
+            "write.addr.eq(begin), write.data.eq(self.ip + 1)",
+        ),
+        Bug("content", "m.d.sync += self.room.eq(0)", "m.d.sync += self.source_port.eq(0) if 0 else []"),
+    )
+
+    def block(self) -> Any:
+        return self.gates.Outbox(12, 8, 2)
+
+    def properties(self, m: Module) -> None:
+        dut = self.dut
+        given = self.check(m, "o")
+        o, lookup = dut.o.stream, dut.lookup
+        assume_steady(m, dut.source_port)
+        # Who writes
+        written, number = Signal(3), Signal(3)
+        before = Signal()
+        ip, port = Signal(32), Signal(16)
+        m.d.sync += [ip.eq(dut.ip), port.eq(dut.port), before.eq(dut.busy | dut.finish)]
+        with m.If(dut.finish):
+            m.d.sync += [written.eq(0), number.eq(number + ~number.all())]
+        with m.Elif(dut.push):
+            m.d.sync += written.eq(written + 1)
+        start = self.steady(m, 1, "which")
+        place = self.steady(m, 4, "place")
+        octet, length, target, target_port, there = Signal(8), Signal(5), Signal(32), Signal(16), Signal()
+        with m.If(number == start):
+            with m.If(dut.push & (written == place[2:])):
+                m.d.sync += octet.eq(dut.word.word_select(place[:2], 8))
+            with m.If(dut.finish):
+                m.d.sync += [length.eq((written + dut.push) << 2), there.eq(1)]
+                m.d.sync += [target.eq(dut.ip), target_port.eq(dut.port)]
+        m.d.comb += [
+            Assume(~dut.push | (~dut.busy & (written < 3)), "writes within"),
+            Assume(~dut.push | (written != 0) | dut.room, "begins with room"),
+            Assume(~dut.finish | (~dut.busy & (dut.push | (written != 0))), "finishes what it began"),
+            Assume(~before | ((dut.ip == ip) & (dut.port == port)), "says where"),
+            Assume(~lookup.done | lookup.valid, "answers"),
+            Assume(~(lookup.found & lookup.failed), "one answer"),
+        ]
+        # What is sent
+        sent, count = Signal(3), Signal(5)
+        with m.If(given.ended | dut.drop_unresolved):
+            m.d.sync += [sent.eq(sent + ~sent.all()), count.eq(0)]
+        with m.Elif(given.transfer):
+            m.d.sync += count.eq(count + 1)
+        mine = o.valid & (sent == start)
+        meta = dut.o.meta
+        m.d.comb += [
+            Assert(
+                ~mine | (there & (meta.length == length) & ((count < length) == ~o.payload.end)), "length"
+            ),
+            Assert(~mine | ((meta.destination == target) & (meta.destination_port == target_port)), "where"),
+            Assert(~mine | o.payload.end | (count != place) | (o.payload.data == octet), "content"),
+            Cover(dut.drop_unresolved, "unresolved"),
+        ]
+
+
+class _Templates:
+    """Two templates: one of four words and a message, one of one word."""
+
+    _items = (
+        (Op.LITERAL, 0x11111111),
+        (Op.LENGTH, 20 << 16 | 0x15),
+        (Op.MESSAGE, 0),
+        (Op.REGISTER, 3),
+        (Op.PARTICIPANT, 2),
+        (Op.END, 0),
+        (Op.OWN, 0),
+        (Op.END, 0),
+    )
+    words: ClassVar[list[int]] = [Const.cast(op).value << 32 | argument for op, argument in _items]
+    second = 6
+
+    def init(self) -> list[int]:
+        return self.words
+
+
+class ComposerSpec(Spec):
+    """`count`: when it is done, as many words have come as the template has, and the message. `none_before`, after the
+    end: nothing comes of itself. `declared`: the length that is said is that of what follows. `over`: soon enough."""
+
+    module = composer
+    quick, deep = 17, 26
+    bugs = (
+        Bug("count", "pushes.eq(in_message)", "pushes.eq(1)"),
+        Bug("none_before", "[there.eq(0), coming.eq(0)]", "there.eq(0)"),
+        Bug("declared", "subject.words[:14]", "subject.words[1:14]"),
+        Bug("over", "(word != subject.words)", "(word != subject.words + 8)"),
+    )
+
+    def block(self) -> Any:
+        return self.gates.Composer(_Templates(), PeerMap(1, 1), OwnMap([Local("t", "T", words=3)], []))
+
+    def properties(self, m: Module) -> None:
+        dut = self.dut
+        running, count, cycles = Signal(), Signal(5), Signal(5)
+        words = dut.subject.words
+        assume_steady(m, words)
+        assume_steady(m, dut.at)
+        second = dut.at == _Templates.second
+        pushed = count + dut.push
+        with m.If(dut.start):
+            m.d.sync += [running.eq(1), count.eq(0), cycles.eq(0)]
+        with m.Elif(running):
+            m.d.sync += [count.eq(pushed), cycles.eq(cycles + 1), running.eq(~dut.done)]
+        needs = Mux(second, 1, 4 + words)
+        m.d.comb += [
+            Assume((dut.at == 0) | second, "a template"),
+            Assume(words <= 3, "a message that fits"),
+            Assume(~dut.start | ~running, "one after another"),
+            Assert(~(running & dut.done) | (pushed == needs), "count"),
+            Assert(running | (~dut.push & ~dut.done), "none_before"),
+            Assert(
+                ~(running & dut.push & ~second & (count == 1))
+                | (dut.word[16:] == Const(20, 16) + (words << 2)),
+                "declared",
+            ),
+            Assert(cycles <= needs + 6, "over"),
+            Cover(running & dut.done & ~second & (words == 2), "message"),
+        ]
+
+
+SPECS: tuple[type[Spec], ...] = (QueueSpec, WalkerSpec, SubmessagesSpec, OutboxSpec, ComposerSpec)
