@@ -17,7 +17,7 @@ from roslet.gateware.tops.ros2_ether import Ros2Ether
 NAME = "ros2_ether"
 HEADERS = {"ros2_config.vh": ros2_config_vh, "ros2_ether_config.vh": ros2_ether_config_vh}
 
-_DEFINE = re.compile(r"^\s*`define\s+(\w+)\s+(.+?)\s*(?://.*)?$", re.MULTILINE)
+_DEFINE = re.compile(r"^[ \t]*`define[ \t]+(\w+)[ \t]+(.+?)[ \t\r]*(?://.*)?$", re.MULTILINE)
 _DERIVED = ("payloadsmem_depth", "payloadsmem_awidth")
 
 
