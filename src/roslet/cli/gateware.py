@@ -30,12 +30,25 @@ SETTINGS = (
 )
 """Inputs of the top that are constants in use: packages have not as many pins."""
 ROS_SETTINGS = (
-    *(f"ros2_{name}{end}" for end in ("", "_len") for name in ("node_name", "pub_topic_name", "sub_topic_name")),
+    *(
+        f"ros2_{name}{end}"
+        for end in ("", "_len")
+        for name in ("node_name", "pub_topic_name", "sub_topic_name")
+    ),
     *(f"ros2_{name}{end}" for end in ("", "_len") for name in ("pub_topic_type_name", "sub_topic_type_name")),
-    *("ros2_node_udp_port", "ros2_port_num_seed", "ros2_guid_prefix", "ros2_pub_app_data", "ros2_pub_app_data_len"),
+    *(
+        "ros2_node_udp_port",
+        "ros2_port_num_seed",
+        "ros2_guid_prefix",
+        "ros2_pub_app_data",
+        "ros2_pub_app_data_len",
+    ),
     "prescaler_div",
     "tx_interval_count",
-    *(f"tx_period_sedp_{kind}_count" for kind in ("pub_wr", "sub_wr", "pub_hb", "sub_hb", "pub_an", "sub_an")),
+    *(
+        f"tx_period_sedp_{kind}_count"
+        for kind in ("pub_wr", "sub_wr", "pub_hb", "sub_hb", "pub_an", "sub_an")
+    ),
     *("tx_period_spdp_wr_count", "tx_period_app_wr_count"),
 )
 """The same of the larger one."""

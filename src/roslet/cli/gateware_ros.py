@@ -70,10 +70,15 @@ class RosSession(Session):
             return
         while (event := self._participant.next_event()) is not None:
             if isinstance(event, events.ParticipantDiscovered):
-                self._tell(f"found a participant, {event.data.guid[:12].hex('.')}", found=event.data.guid.hex())
+                self._tell(
+                    f"found a participant, {event.data.guid[:12].hex('.')}", found=event.data.guid.hex()
+                )
             elif isinstance(event, events.EndpointMatched):
                 self._matched = True
-                self._tell(f"{event.data.topic[2:]} matches, of type {event.data.type_name}", matched=event.data.topic)
+                self._tell(
+                    f"{event.data.topic[2:]} matches, of type {event.data.type_name}",
+                    matched=event.data.topic,
+                )
             elif isinstance(event, events.SampleReceived):
                 payload = bytes(event.payload)
                 text = payload[8 : 8 + int.from_bytes(payload[4:8], "little") - 1].decode("utf-8", "replace")

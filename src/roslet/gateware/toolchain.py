@@ -68,7 +68,8 @@ def run(tool: str, arguments: list[str], folder: pathlib.Path) -> None:
 def write_rtlil(top: Any, name: str, folder: pathlib.Path) -> str:
     """Write `name`.il, without the places in the source: the same design gives the same text wherever it is.
 
-    Beside it go the files in `top.verilog`, where it has that: the modules of its instances. Returns what has Yosys read all.
+    Beside it go the files in `top.verilog`, where it has that: the modules of its instances. Returns what has Yosys read
+    all.
     """
     from amaranth.back import rtlil
 

@@ -17,7 +17,7 @@ from roslet.gateware.tops.ros2_ether import Ros2Ether
 NAME = "ros2_ether"
 HEADERS = {"ros2_config.vh": ros2_config_vh, "ros2_ether_config.vh": ros2_ether_config_vh}
 
-_DEFINE = re.compile(r"^\s*`define\s+(\w+)\s+(.+?)\s*(?://.*)?$", re.MULTILINE)
+_DEFINE = re.compile(r"^[ \t]*`define[ \t]+(\w+)[ \t]+(.+?)[ \t\r]*(?://.*)?$", re.MULTILINE)
 _DERIVED = ("payloadsmem_depth", "payloadsmem_awidth")
 
 
@@ -43,7 +43,9 @@ def read_headers(paths: Sequence[pathlib.Path]) -> Config:
     config = Config(**found)
     for field, text in derived.items():
         if text.isdecimal() and int(text) != getattr(config, field):
-            raise ValueError(f"{field.upper()} is {text}, but follows from other constants: {getattr(config, field)}")
+            raise ValueError(
+                f"{field.upper()} is {text}, but follows from other constants: {getattr(config, field)}"
+            )
     return config
 
 
@@ -80,7 +82,8 @@ def wrapper(top: Ros2Ether) -> str:
         f"  parameter PRESCALER_DIV = {config.prescaler_div},",
         "  parameter PRESCALAR_DIV = PRESCALER_DIV, // the manual has both spellings; this one counts",
         ",\n".join(
-            f"  parameter {name} = (`ROS2CLK_HZ / PRESCALAR_DIV) {_scale(period)}" for name, period in periods.items()
+            f"  parameter {name} = (`ROS2CLK_HZ / PRESCALAR_DIV) {_scale(period)}"
+            for name, period in periods.items()
         ),
         ") (",
     ]

@@ -138,7 +138,9 @@ LIFTED = {"N": 40, "T": 48, "Y": 80, "A": 200, "AW": 8, "R": 8, "X": 7, "PW": 13
         ),
     ],
 )
-def test_the_ports_are_those_of_the_manual_and_constants_lift_them(config: Config, sizes: dict[str, int]) -> None:
+def test_the_ports_are_those_of_the_manual_and_constants_lift_them(
+    config: Config, sizes: dict[str, int]
+) -> None:
     found = {
         (name, "input" if member.flow.name == "In" else "output", len(getattr(Ros2Ether(config), name)))
         for name, member in Ros2Ether(config).signature.members.items()
@@ -221,7 +223,10 @@ def test_peers_learn_who_it_is_from_its_ports(bench: Bench) -> None:
 
 def test_the_graph_says_its_name_and_its_endpoints(bench: Bench) -> None:
     bench.peer.participant.create_reader(
-        "ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_", LATCHED, bench.node.wire.now
+        "ros_discovery_info",
+        "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_",
+        LATCHED,
+        bench.node.wire.now,
     )
     assert bench.run(2.0, lambda: bool(bench.received()))
     name = NODE.encode() + b"\0"

@@ -11,11 +11,11 @@ from roslet.gateware.words import MessageSignature
 
 
 def _right(m: Module, req: Value, rel: Value, grant: Signal, wanted: Value, moving: Signal) -> Value:
-    """Who may touch the data: the user while `grant` is high, the node while `moving` is, never both. High when the node's turn
-    begins, which `wanted` asks for.
+    """Who may touch the data: the user while `grant` is high, the node while `moving` is, never both. High when the node's
+    turn begins, which `wanted` asks for.
 
-    The user has it in the cycle after `req`, if nobody else has. Where both want it, it goes to the node; and when the node has
-    had it, to the user: so nobody waits for ever, however the other asks.
+    The user has it in the cycle after `req`, if nobody else has. Where both want it, it goes to the node; and when the node
+    has had it, to the user: so nobody waits for ever, however the other asks.
     """
     before = Signal()  # the node had it in the last cycle
     begins = Signal()
@@ -31,8 +31,9 @@ def _right(m: Module, req: Value, rel: Value, grant: Signal, wanted: Value, movi
 class AppDataTx(wiring.Component):
     """Publishes what stands at `ros2_pub_app_data`, of `size` octets at most. The manual, 4.2.
 
-    Ports: `req`, `rel`, `grant`, the right to change the data; `length`, in octets; `index`, which word of the data is wanted,
-    which is `word` in the next cycle; `periodic`, high for a cycle when a message is due by the clock; `enable`; `o`, messages.
+    Ports: `req`, `rel`, `grant`, the right to change the data; `length`, in octets; `index`, which word of the data is
+    wanted, which is `word` in the next cycle; `periodic`, high for a cycle when a message is due by the clock; `enable`;
+    `o`, messages.
 
     A message is due when `periodic` says so, and, unless `on_change` is false, when the user gives back the right to change
     the data. It goes as soon as the user does not have that right, which is not given while a message is taken: it has
@@ -104,15 +105,15 @@ class AppDataTx(wiring.Component):
 class AppDataRx(wiring.Component):
     """Writes messages of up to `size` octets into the user's memory. The manual, 3.6 and 4.3.
 
-    Ports: `i`, messages; `room`, for whoever gives them (`Submessages`): a whole one can be taken; `enable`, none is while it
-    is low; `addr`, `ce`, `we`, `wdata`, of the memory; `length` and `representation`, of the message in it; `req`, `rel`, `grant`, the
-    right to read it; `recv`, there is a message that the user has not had the right to read: it falls when that right is
-    given, or the next message is written.
+    Ports: `i`, messages; `room`, for whoever gives them (`Submessages`): a whole one can be taken; `enable`, none is while
+    it is low; `addr`, `ce`, `we`, `wdata`, of the memory; `length` and `representation`, of the message in it; `req`,
+    `rel`, `grant`, the right to read it; `recv`, there is a message that the user has not had the right to read: it falls
+    when that right is given, or the next message is written.
 
-    A message is kept here until it is known to be good, and until the user does not have the right to read the one before; that
-    right is not given while it is written, an octet a cycle. So the memory never has parts of two messages while the user
-    reads, and what was bad never touches it. `recv` rises 3 cycles, and one for each octet, after the end of the message, where the memory
-    is free. What comes while one is kept is for whoever gives messages to drop: `room` is low.
+    A message is kept here until it is known to be good, and until the user does not have the right to read the one before;
+    that right is not given while it is written, an octet a cycle. So the memory never has parts of two messages while the
+    user reads, and what was bad never touches it. `recv` rises 3 cycles, and one for each octet, after the end of the
+    message, where the memory is free. What comes while one is kept is for whoever gives messages to drop: `room` is low.
 
     Good, and dropped whole: `drop_long`, more than `size` octets.
     """
@@ -201,5 +202,3 @@ class AppDataRx(wiring.Component):
                     ]
                     m.next = "IDLE"
         return m
-
-

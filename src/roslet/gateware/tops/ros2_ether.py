@@ -106,7 +106,9 @@ class Ros2Ether(EthernetUdp):
         )
         self._publisher, self._subscriber = AppDataTx(size, on_change), AppDataRx(size)
         self._switch = PortSwitch((0, 0, 0, 1))
-        self._periods = Periods(config.ros2clk_hz, round(config.ros2clk_hz / config.prescaler_div * QUICK_PERIOD))
+        self._periods = Periods(
+            config.ros2clk_hz, round(config.ros2clk_hz / config.prescaler_div * QUICK_PERIOD)
+        )
         self._build(
             config,
             phy,
@@ -220,7 +222,9 @@ class Ros2Ether(EthernetUdp):
             *(getattr(periods, inside).eq(getattr(self, outside)) for outside, inside in PERIODS.items()),
         ]
 
-    def _load_and_publish(self, m: Module, loaded: Value, publishing: Value, meta_port: Value, user_port: Value) -> None:
+    def _load_and_publish(
+        self, m: Module, loaded: Value, publishing: Value, meta_port: Value, user_port: Value
+    ) -> None:
         """Words of ports, one at a time: of the message, and before, once, of all that has to be in the node's memory."""
         m.submodules.publisher = publisher = self._publisher
         own = self._participant.own_map
