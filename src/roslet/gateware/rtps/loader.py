@@ -17,7 +17,7 @@ Store = tuple[int, int, bool]
 class Loader(wiring.Component):
     """Makes the stores of a program, in order, once; from when `enable` is high on.
 
-    Ports: `index`, which of the words is wanted, and `word`, that word, in the next cycle or the one behind it; `name_words`;
+    Ports: `index`, which word is wanted, and `word`, that word, in the next cycle or the one behind it; `name_words`;
     `write`; `done`, high when all is written, until the next reset. A store takes 4 cycles.
     """
 
