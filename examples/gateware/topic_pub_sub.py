@@ -45,7 +45,7 @@ class Design(wiring.Component):
         self, clk_hz: int = 100_000_000, rate: float = 1.0, phy: str = "mii", counters: bool = False
     ) -> None:
         self._clk_hz, self._period = clk_hz, round(clk_hz / rate)
-        # The user's part decides when to publish; and peers are reminded as soon as they may have missed something.
+        # It is the user's part that decides when to publish; and peers are reminded soon of what they may have missed.
         config = Config(
             ros2clk_hz=clk_hz, tx_period_app_wr_ms=600_000, tx_period_sedp_pub_hb_ms=100, tx_interval_ms=1
         )

@@ -38,15 +38,16 @@ def add(group: Group) -> None:
         "sim",
         run,
         "simulate a gateware example at the pins of its PHY",
-        "roslet gateware sim udp-tx-rx\nroslet gateware sim topic-pub-sub\n"
+        "roslet gateware sim udp-tx-rx\n"
+        "roslet gateware sim topic-pub-sub\n"
         "roslet gateware sim udp-tx-rx --seconds 20 --pcap wire.pcap --loss 0.1\n"
         "roslet gateware sim udp-tx-rx --tap tap0   # as root; then: ping 192.168.1.100",
         "json",
     )
     sim.description = (
-        "Simulate a gateware example at the pins of its PHY.\n\nThe design is compiled, which takes half a minute to two "
-        f"the first time. On the wire with it is a software host, {HOST}, which pings it and sends it datagrams, or is a "
-        "ROS 2 node and exchanges messages with it; or, with --tap, the Linux kernel, and whatever ROS 2 runs there."
+        "Simulate a gateware example at the pins of its PHY.\n\nThe design is compiled, which takes a minute or two the "
+        f"first time. On the wire with it is a software host, {HOST}, which pings it and sends it datagrams, or is a ROS 2 "
+        "node and exchanges messages with it; or, with --tap, the Linux kernel, and whatever ROS 2 runs there."
     )
     sim.add_argument("example", choices=sorted(EXAMPLES), metavar="EXAMPLE", help=", ".join(sorted(EXAMPLES)))
     sim.add_argument(

@@ -23,8 +23,8 @@ from roslet.errors import RosletError
 HERE = pathlib.Path(__file__).resolve().parent
 DRIVER = HERE / "driver.cc"
 SCRIPT = (
-    "read_rtlil design.il; READ_VERILOG; hierarchy -check -top top; "
-    "proc; flatten; opt; opt_clean; write_cxxrtl design.cc"
+    "read_rtlil design.il; READ_VERILOG; hierarchy -check -top top; proc; flatten; opt; opt_clean; "
+    "write_cxxrtl design.cc"
 )
 FLAGS = ("-std=c++17", "-O2", "-fPIC", "-shared", "-DNDEBUG", "-w")
 

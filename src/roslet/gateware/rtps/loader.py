@@ -11,15 +11,14 @@ from amaranth.lib.wiring import In, Out
 from roslet.gateware.rtps.ports import WriteSignature
 
 Store = tuple[int, int, bool]
-"""An address in the memory, which word of the ports goes there, and whether it goes so many words further as `name_words`
-says."""
+"""An address in the memory, which word of the ports goes there, and whether it goes `name_words` words further."""
 
 
 class Loader(wiring.Component):
-    """Makes the stores of a program, in their order, once; from when `enable` is high on.
+    """Makes the stores of a program, in order, once; from when `enable` is high on.
 
-    Ports: `index`, which of the words is wanted, and `word`, that word, in the next cycle or the one behind it;
-    `name_words`; `write`; `done`, high when all is written, until the next reset. A store takes 4 cycles.
+    Ports: `index`, which word is wanted, and `word`, that word, in the next cycle or the one behind it; `name_words`;
+    `write`; `done`, high when all is written, until the next reset. A store takes 4 cycles.
     """
 
     def __init__(self, program: Sequence[Store], words: int, address_bits: int, name_bits: int) -> None:

@@ -106,9 +106,9 @@ class AppDataRx(wiring.Component):
     """Writes messages of up to `size` octets into the user's memory. The manual, 3.6 and 4.3.
 
     Ports: `i`, messages; `room`, for whoever gives them (`Submessages`): a whole one can be taken; `enable`, none is while
-    it is low; `addr`, `ce`, `we`, `wdata`, of the memory; `length` and `representation`, of the message in it; `req`, `rel`,
-    `grant`, the right to read it; `recv`, there is a message that the user has not had the right to read: it falls when that
-    right is given, or the next message is written.
+    it is low; `addr`, `ce`, `we`, `wdata`, of the memory; `length` and `representation`, of the message in it; `req`,
+    `rel`, `grant`, the right to read it; `recv`, there is a message that the user has not had the right to read: it falls
+    when that right is given, or the next message is written.
 
     A message is kept here until it is known to be good, and until the user does not have the right to read the one before;
     that right is not given while it is written, an octet a cycle. So the memory never has parts of two messages while the
