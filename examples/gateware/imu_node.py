@@ -16,6 +16,7 @@ from amaranth.lib.cdc import ResetSynchronizer
 from amaranth.lib.wiring import Out
 
 from roslet.gateware.tops.ros_node import Publish, RosNode, Subscribe
+from roslet.gateware.wires import expose
 from roslet.gen.gateware import Bounds
 
 ADDRESS = "192.168.1.100/24"
@@ -65,10 +66,7 @@ class Design(wiring.Component):
         m.d.comb += ClockSignal("sync").eq(self.clk)
         m.submodules.reset = ResetSynchronizer(~self.rst_n, domain="sync")
         m.submodules.node = node = self._node
-        for name in self._pins:
-            inside, outside = getattr(node, name), getattr(self, name)
-            flow = node.signature.members[name].flow
-            m.d.comb += outside.eq(inside) if flow == Out else inside.eq(outside)
+        expose(m, node, self, self._pins)
         self._measure(m)
         velocity = node.cmd_vel
         m.d.comb += velocity.ready.eq(1)

@@ -18,6 +18,7 @@ from amaranth.lib.wiring import Out
 
 from roslet.gateware.config import Config
 from roslet.gateware.tops.ros2_ether import Ros2Ether
+from roslet.gateware.wires import expose
 
 USER = pathlib.Path(__file__).with_suffix(".v")
 NODE, PUBLISHED, SUBSCRIBED = "topic_pub_sub", "rt/bbb", "rt/aaa"
@@ -62,9 +63,7 @@ class Design(wiring.Component):
         m.submodules.reset = ResetSynchronizer(~self.rst_n, domain="sync")
         m.submodules.node = node = self._node
         members = node.signature.members
-        for name in self._pins:
-            inside, outside = getattr(node, name), getattr(self, name)
-            m.d.comb += outside.eq(inside) if members[name].flow == Out else inside.eq(outside)
+        expose(m, node, self, self._pins)
 
         ready = Signal()  # the user's part, and what it enables, begin when the reset is over
         m.d.sync += ready.eq(1)

@@ -10,10 +10,11 @@ import pathlib
 
 from amaranth.hdl import Module
 from amaranth.lib import wiring
-from amaranth.lib.wiring import Out, connect
+from amaranth.lib.wiring import connect
 
 import roslet
 from roslet.gateware.tops.ros_node import Publish, RosNode, Subscribe
+from roslet.gateware.wires import expose
 
 TYPES = pathlib.Path(__file__).parents[1] / "msgs" / "mros_comm_measure"
 TYPE = "mros_comm_measure/msg/Coordinate"
@@ -40,8 +41,6 @@ class Design(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         m.submodules.node = node = self._node
-        for name, member in self.signature.members.items():
-            inside, outside = getattr(node, name), getattr(self, name)
-            m.d.comb += outside.eq(inside) if member.flow == Out else inside.eq(outside)
+        expose(m, node, self, self.signature.members)
         connect(m, node.ping, node.pong)
         return m

@@ -16,6 +16,7 @@ from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.config import Config, check_rx_udp_port
 from roslet.gateware.tops.ethernet_udp import EthernetUdp
+from roslet.gateware.wires import expose
 
 TEXT = b"UDP Send Test\n"
 LENGTHS = (1, 5, 10, 15)
@@ -139,11 +140,11 @@ class Design(wiring.Component):
         m.submodules.reset = ResetSynchronizer(~self.rst_n, domain="sync")
         m.submodules.node = node = self._node
         m.submodules.user = user = self._user
-        for name in self._pins:
-            self._join(m, node, self, name)
-        for name in user.signature.members:
+        expose(m, node, self, self._pins)
+        for name, member in user.signature.members.items():
             if name != "led":
-                self._join(m, node, user, name)
+                ours, its = getattr(node, name), getattr(user, name)
+                m.d.comb += ours.eq(its) if member.flow == Out else its.eq(ours)
         m.submodules.payloads = payloads = memory.Memory(
             shape=8, depth=node.config.payloadsmem_depth, init=[]
         )
@@ -168,9 +169,3 @@ class Design(wiring.Component):
             node.ros2_fragment_expiration.eq(self._clk_hz),
         ]
         return m
-
-    @staticmethod
-    def _join(m: Module, node: EthernetUdp, other: wiring.Component, name: str) -> None:
-        inside, outside = getattr(node, name), getattr(other, name)
-        is_output = node.signature.members[name].flow == Out
-        m.d.comb += outside.eq(inside) if is_output else inside.eq(outside)

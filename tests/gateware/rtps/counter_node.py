@@ -15,6 +15,7 @@ from amaranth.lib.wiring import In, Out
 from roslet.cli.gateware_sim import dropped
 from roslet.gateware.rtps.tables import Local
 from roslet.gateware.tops.ros_core import Identity, RosCore
+from roslet.gateware.wires import expose
 from roslet.idl import Registry, type_hash
 from roslet.sim.compile import build
 from roslet.sim.mii import Mii
@@ -59,10 +60,7 @@ class CounterNode(wiring.Component):
         m.d.comb += ClockSignal("sync").eq(self.clk)
         m.submodules.reset = ResetSynchronizer(~self.rst_n, domain="sync")
         m.submodules.core = core = self._core
-        for name in self._pins:
-            inside, outside = getattr(core, name), getattr(self, name)
-            flow = core.signature.members[name].flow
-            m.d.comb += outside.eq(inside) if flow == Out else inside.eq(outside)
+        expose(m, core, self, self._pins)
         left = Signal(32)
         o, i = core.publish0.stream, core.receive0.stream
         with m.FSM():

@@ -48,8 +48,9 @@ class Finder(wiring.Component):
                 m.d.sync += found.eq(0)
                 with m.If(self.start):
                     m.next = "SCAN"
-            find_endpoint(m, self._peers, self.peers, self.matched, self.key, self.slot, self.writer, self.endpoint,
-                          self.info, found, "OVER")  # fmt: skip
+            port = self.peers
+            find_endpoint(m, self._peers, port.addr, port.data, self.matched, self.key, self.slot, self.writer,
+                          self.endpoint, self.info, found, "OVER")  # fmt: skip
             with m.State("OVER"):
                 m.d.comb += self.over.eq(1)
                 m.next = "IDLE"

@@ -14,6 +14,7 @@ from amaranth.lib.wiring import In, Out
 from roslet.cli.gateware_sim import dropped
 from roslet.gateware.config import Config
 from roslet.gateware.tops.ros2_ether import Ros2Ether
+from roslet.gateware.wires import expose
 from roslet.sim.compile import build
 from roslet.sim.mii import Mii
 from roslet.sim.model import Model
@@ -65,10 +66,7 @@ class Bench(wiring.Component):
         m.d.comb += ClockSignal("sync").eq(self.clk)
         m.submodules.reset = ResetSynchronizer(~self.rst_n, domain="sync")
         m.submodules.node = node = self._node
-        for name in self._pins:
-            inside, outside = getattr(node, name), getattr(self, name)
-            flow = node.signature.members[name].flow
-            m.d.comb += outside.eq(inside) if flow == Out else inside.eq(outside)
+        expose(m, node, self, self._pins)
 
         def ram(name: str, width: int, depth: int) -> Any:
             m.submodules[name] = made = memory.Memory(shape=width, depth=depth, init=[])

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from amaranth.hdl import Cat, ClockDomain, ClockSignal, Module, Signal
 from amaranth.lib import wiring
-from amaranth.lib.wiring import In, Out
+from amaranth.lib.wiring import In
+
+from roslet.gateware.wires import expose
 
 
 class Pinned(wiring.Component):
@@ -32,8 +34,5 @@ class Pinned(wiring.Component):
         chain = Signal(self.bits, reset_less=True)
         m.d.settings += chain.eq(Cat(self.settings, chain))
         m.d.comb += Cat(getattr(design, name) for name in self._names).eq(chain)
-        for name, member in self.signature.members.items():
-            if name != "settings":
-                inside, outside = getattr(design, name), getattr(self, name)
-                m.d.comb += outside.eq(inside) if member.flow == Out else inside.eq(outside)
+        expose(m, design, self, (name for name in self.signature.members if name != "settings"))
         return m

@@ -1,9 +1,6 @@
-"""Who is there, and which of their endpoints match ours: SPDP and SEDP. RTPS 2.3, 8.5.3, 8.5.4; DDS 1.4, 2.2.3
-(matching)."""
+"""Who is there, and which of their endpoints match ours: SPDP and SEDP. RTPS 2.3, 8.5.3, 8.5.4; DDS 1.4, 2.2.3."""
 
 from __future__ import annotations
-
-from typing import Any
 
 from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
 from amaranth.lib import wiring
@@ -13,7 +10,7 @@ from roslet.gateware.meta import ADDRESSES
 from roslet.gateware.rtps import ports, tables
 from roslet.gateware.rtps.parameters import Parameters
 from roslet.gateware.rtps.ports import DISCOVERY, READ_LATENCY, ReadSignature, WriteSignature
-from roslet.gateware.rtps.scan import find_endpoint
+from roslet.gateware.rtps.scan import find_endpoint, lowest
 from roslet.gateware.rtps.tables import MAX_HISTORY, OwnMap, PeerMap
 from roslet.gateware.words import MessageSignature
 from roslet.wire.rtps.qos import TRANSIENT_LOCAL, VOLATILE
@@ -73,13 +70,15 @@ class Discovery(wiring.Component):
         read, meta = parameters.read, self.i.meta
         is_participant = meta.kind == ports.PARTICIPANTS
 
-        slot = Signal(8)
-        endpoint = Signal(range(peers.endpoints))
-        found = Signal()
-        info = Signal(32)
-        entity = Signal(32)
-        step = Signal(range(max(16, peers.endpoints + READ_LATENCY)))
-        addressed, before = Signal.like(step), Signal.like(step)  # what the memory gives next, and now
+        # Whom it is about
+        self._slot = slot = Signal(8)
+        self._endpoint, self._found = Signal(range(peers.endpoints)), Signal()
+        self._entity, info = Signal(32), Signal(32)
+        self._step = step = Signal(range(max(16, peers.endpoints + READ_LATENCY)))
+        addressed = Signal.like(step)
+        self._before = before = Signal.like(
+            step
+        )  # what the memory gives now; `addressed`, what it gives next
         heard = Signal(peers.participants)
         ticked, sweeping = Signal(), Signal()
         arrived = Signal()  # in this datagram somebody, who is not known by its walker yet
@@ -87,7 +86,6 @@ class Discovery(wiring.Component):
             m.d.sync += arrived.eq(0)
         with m.If(self.greet):
             m.d.sync += arrived.eq(1)
-        local, agreed = Signal(max(1, self._own.local_bits)), Signal()
         m.d.sync += [addressed.eq(step), before.eq(addressed)]
         with m.If(self.tick):
             m.d.sync += ticked.eq(1)
@@ -101,41 +99,25 @@ class Discovery(wiring.Component):
             parameters.peers.data.eq(self.peers.data),
             self.greet_slot.eq(slot),
         ]
-        address, own_address = Signal(peers.address_bits), Signal(self._own.address_bits)
-        put, put_at, put_data = Signal(), Signal(peers.address_bits), Signal(32)
+        # Our own use of the memories, by turns with that of the parameters
+        self._address, self._own_address = Signal(peers.address_bits), Signal(self._own.address_bits)
+        self._put = put = WriteSignature(peers.address_bits).create()
         m.d.comb += [
-            self.peers.addr.eq(address | parameters.peers.addr),
-            self.own.addr.eq(own_address | parameters.own.addr),
-            self.write.en.eq(put | parameters.write.en),
-            self.write.addr.eq(put_at | parameters.write.addr),
-            self.write.data.eq(put_data | parameters.write.data),
+            self.peers.addr.eq(self._address | parameters.peers.addr),
+            self.own.addr.eq(self._own_address | parameters.own.addr),
+            self.write.en.eq(put.en | parameters.write.en),
+            self.write.addr.eq(put.addr | parameters.write.addr),
+            self.write.data.eq(put.data | parameters.write.data),
         ]
 
-        def write(target: Value, value: Value | int) -> None:
-            m.d.comb += [put.eq(1), put_at.eq(target), put_data.eq(value)]
-
-        def free(bits: Value) -> Value:
-            """The number of the first that is low, and whether there is any."""
-            number: Value = C(0, max(1, (len(bits) - 1).bit_length()))
-            for n in reversed(range(len(bits))):
-                number = Mux(~bits[n], n, number)
-            return number
-
-        class _Port:
-            """What `find_endpoint` reads by."""
-
-            addr = address
-            data = self.peers.data
-
-        port: Any = _Port
         with m.FSM() as fsm:
             m.d.comb += self.hold.eq((fsm.ongoing("IDLE") & ticked) | sweeping)
             with m.State("IDLE"):
                 m.d.sync += [
-                    found.eq(0),
+                    self._found.eq(0),
                     step.eq(0),
                     slot.eq(meta.slot),
-                    entity.eq(read.entity),
+                    self._entity.eq(read.entity),
                 ]
                 with m.If(ticked & self.idle):
                     m.d.sync += [ticked.eq(0), sweeping.eq(1), slot.eq(0)]
@@ -144,39 +126,38 @@ class Discovery(wiring.Component):
                     m.next = "PARTICIPANT"
                 with m.Elif(parameters.done):
                     m.next = "KEY"
-                    m.d.comb += address.eq(peers.scratch(tables.SCRATCH_ENTITY))
+                    m.d.comb += self._address.eq(peers.scratch(tables.SCRATCH_ENTITY))
             with m.State("PROCEED"):
                 m.d.comb += parameters.proceed.eq(1)
                 m.next = "IDLE"
-            self._participant(m, read, write, address, slot, step, before, heard, free, arrived)
+            self._participant(m, heard, arrived)
             with m.State("KEY"):
                 m.next = "ENTITY"
             with m.State("ENTITY"):
                 m.next = "SCAN"
                 with m.If(~read.guid):
-                    m.d.sync += entity.eq(self.peers.data)
+                    m.d.sync += self._entity.eq(self.peers.data)
                     with m.If(~(meta.gone & meta.has_key)):
                         m.d.comb += self.drop_incomplete.eq(1)
                         m.next = "PROCEED"
             find_endpoint(
                 m,
                 peers,
-                port,
+                self._address,
+                self.peers.data,
                 self.matched,
-                entity,
+                self._entity,
                 meta.slot,
                 meta.kind == ports.PUBLICATIONS,
-                endpoint,
+                self._endpoint,
                 info,
-                found,
+                self._found,
                 "ENDPOINT",
             )
-            self._endpoint(
-                m, read, write, address, own_address, slot, endpoint, found, entity, step, before, local, agreed, free
-            )  # fmt: skip
+            self._match(m)
             # -- who is silent
             with m.State("SWEEP"):
-                m.d.comb += address.eq(peers.participant(slot, tables.LEASE))
+                m.d.comb += self._address.eq(peers.participant(slot, tables.LEASE))
                 m.d.sync += step.eq(0)
                 with m.If(slot == peers.participants):
                     m.d.sync += sweeping.eq(0)
@@ -186,23 +167,23 @@ class Discovery(wiring.Component):
                 with m.Else():
                     m.next = "ADDRESSED"
             with m.State("ADDRESSED"):
-                m.d.comb += address.eq(peers.participant(slot, tables.LEFT))
+                m.d.comb += self._address.eq(peers.participant(slot, tables.LEFT))
                 m.next = "LEASE"
             with m.State("LEASE"):
                 m.next = "LEFT"
                 with m.If(heard.bit_select(slot, 1)):
                     m.d.sync += [heard.bit_select(slot, 1).eq(0), slot.eq(slot + 1)]
-                    write(peers.participant(slot, tables.LEFT), self.peers.data)
+                    self._write(m, peers.participant(slot, tables.LEFT), self.peers.data)
                     m.next = "SWEEP"
             with m.State("LEFT"):
                 left = self.peers.data[:17]
                 m.next = "REMOVE"
                 with m.If(left != 0):
-                    write(peers.participant(slot, tables.LEFT), left - 1)
+                    self._write(m, peers.participant(slot, tables.LEFT), left - 1)
                     m.d.sync += slot.eq(slot + 1)
                     m.next = "SWEEP"
             with m.State("REMOVE"):  # the participant, and each of its endpoints
-                m.d.comb += address.eq(peers.endpoint(step, tables.INFO))
+                m.d.comb += self._address.eq(peers.endpoint(step, tables.INFO))
                 m.d.sync += [step.eq(step + 1), self.alive.bit_select(slot, 1).eq(0)]
                 with m.If(
                     (step >= READ_LATENCY)
@@ -216,20 +197,13 @@ class Discovery(wiring.Component):
                         m.next = "SWEEP"
         return m
 
-    def _participant(
-        self,
-        m: Module,
-        read: Any,
-        write: Any,
-        address: Value,
-        slot: Value,
-        step: Value,
-        before: Value,
-        heard: Value,
-        free: Any,
-        arrived: Value,
-    ) -> None:
-        peers, meta = self._peers, self.i.meta
+    def _write(self, m: Module, target: Value, value: Value | int) -> None:
+        m.d.comb += [self._put.en.eq(1), self._put.addr.eq(target), self._put.data.eq(value)]
+
+    def _participant(self, m: Module, heard: Signal, arrived: Value) -> None:
+        """An announcement, or a farewell. `heard`: who has given a sign of life."""
+        peers, meta, read = self._peers, self.i.meta, self._parameters.read
+        slot, step, before = self._slot, self._step, self._before
         fresh = Signal()
         with m.State("PARTICIPANT"):
             m.d.sync += [step.eq(0), fresh.eq(~meta.known)]
@@ -247,16 +221,17 @@ class Discovery(wiring.Component):
             with m.Else():
                 m.next = "COPY"
                 with m.If(~meta.known):
-                    m.d.sync += slot.eq(free(self.alive))
+                    m.d.sync += slot.eq(lowest(~self.alive))
         with m.State("COPY"):  # the scratch area, behind what is read
             source = Signal(4)
             m.d.comb += source.eq(step)
             with m.If(~read.user & ((step == tables.USER_IP) | (step == tables.USER_PORT))):
                 m.d.comb += source.eq(step - tables.USER_IP + tables.META_IP)
-            m.d.comb += address.eq(peers.scratch(source))
+            m.d.comb += self._address.eq(peers.scratch(source))
             m.d.sync += step.eq(step + 1)
             with m.If(step >= READ_LATENCY):
-                write(
+                self._write(
+                    m,
                     peers.participant(slot, before),
                     Mux(before >= tables.LEASE, read.lease + 1, self.peers.data),
                 )
@@ -277,7 +252,7 @@ class Discovery(wiring.Component):
                 word == tables.NEXT_LO,
                 Mux(word == tables.ASK_TO, tables.EVERYTHING, word == tables.ASK_FROM),
             )
-            write(peers.builtin(slot, kind, word), value)
+            self._write(m, peers.builtin(slot, kind, word), value)
             m.d.comb += [
                 self.due.eq(step[:2] == 3),
                 self.due_proxy.eq(Cat(kind, slot)[: len(self.due_proxy) - 1]),
@@ -286,24 +261,17 @@ class Discovery(wiring.Component):
             with m.If(step[:4] == 15):
                 m.next = "PROCEED"
 
-    def _endpoint(
-        self,
-        m: Module,
-        read: Any,
-        write: Any,
-        address: Value,
-        own_address: Value,
-        slot: Value,
-        endpoint: Value,
-        found: Value,
-        entity: Value,
-        step: Value,
-        before: Value,
-        local: Value,
-        agreed: Value,
-        free: Any,
-    ) -> None:
-        peers, meta, own = self._peers, self.i.meta, self._own
+    def _match(self, m: Module) -> None:
+        """An endpoint, which was looked for among those that match ours."""
+        peers, meta, own, read = self._peers, self.i.meta, self._own, self._parameters.read
+        slot, step, before, endpoint, found = (
+            self._slot,
+            self._step,
+            self._before,
+            self._endpoint,
+            self._found,
+        )
+        local, agreed = Signal(max(1, own.local_bits)), Signal()
         is_writer = meta.kind == ports.PUBLICATIONS
         same = self._parameters.same
         # What each of ours has to say to its QoS: a peer's reader must not ask for more than our writer offers, and so on.
@@ -363,16 +331,16 @@ class Discovery(wiring.Component):
             with m.Else():
                 m.next = "PROXY"
                 with m.If(~found):
-                    m.d.sync += endpoint.eq(free(self.matched))
+                    m.d.sync += endpoint.eq(lowest(~self.matched))
         with m.State("PROXY"):  # behind what is read
             last = self.own.data
-            m.d.comb += own_address.eq(own.writer(local, tables.WRITER_LAST))
+            m.d.comb += self._own_address.eq(own.writer(local, tables.WRITER_LAST))
             where = Mux(step[0], tables.USER_PORT, tables.USER_IP)  # for IP, 2, and PORT, 3
-            m.d.comb += address.eq(Mux(read.user, peers.scratch(where), peers.participant(slot, where)))
+            m.d.comb += self._address.eq(Mux(read.user, peers.scratch(where), peers.participant(slot, where)))
             # Before all that is kept, where it gets what was before it: numbers are compared by their difference.
             first = last + Mux(transient, C(-MAX_HISTORY, 32), C(1, 32))
             words = [
-                entity,
+                self._entity,
                 Cat(slot, local, C(0, 8 - len(local)), is_writer, reliable),
                 self.peers.data,
                 self.peers.data,
@@ -384,7 +352,7 @@ class Discovery(wiring.Component):
             with m.If(step >= READ_LATENCY), m.Switch(before[:3]):
                 for n, value in enumerate(words):
                     with m.Case(n):
-                        write(peers.endpoint(endpoint, n), value)
+                        self._write(m, peers.endpoint(endpoint, n), value)
             m.d.sync += step.eq(step + 1)
             with m.If((step == tables.PORT + READ_LATENCY) & found):
                 m.next = "PROCEED"  # it has only moved

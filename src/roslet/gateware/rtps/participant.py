@@ -31,9 +31,9 @@ DISCOVERY_SIZE = 900
 class Participant(wiring.Component):
     """A participant with fixed writers and readers.
 
-    writers, readers    the user's, in the order of their numbers; `kept` are further writers, whose only message is there
-    from
-                        the beginning: its octets, without the encapsulation header
+    writers, readers    the user's, in the order of their numbers
+    kept                further writers, whose only message is there from the beginning: its octets, without the
+                        encapsulation header
     prefix              our GUID prefix
     address, ports      ours, of discovery and of the user's messages
     domain              its number, or None: it is not told, and that of others not looked at

@@ -1,10 +1,8 @@
-"""Looking for an endpoint of a peer among those that match ours."""
+"""Looking for one among several: an endpoint of a peer among those that match ours, a bit among bits."""
 
 from __future__ import annotations
 
-from typing import Any
-
-from amaranth.hdl import Module, Signal, Value
+from amaranth.hdl import C, Module, Mux, Signal, Value
 
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.ports import READ_LATENCY
@@ -14,7 +12,8 @@ from roslet.gateware.rtps.tables import PeerMap
 def find_endpoint(
     m: Module,
     peers: PeerMap,
-    port: Any,
+    address: Value,
+    given: Value,
     matched: Value,
     key: Value,
     slot: Value,
@@ -25,7 +24,7 @@ def find_endpoint(
     then: str,
 ) -> None:
     """The states SCAN, INFO and CHECK of an FSM: find participant `slot`'s writer, or reader, with entity id `key`, among
-    those in `matched`, by the read port `port`.
+    those in `matched`, by `address` and `given` of a read port.
 
     In state `then`, `found` says whether it is there; if so, it is `endpoint`, and `info` is its INFO. `found` must be low
     before. Takes one cycle for each endpoint and two more, and four for each other endpoint with an equal id.
@@ -36,12 +35,12 @@ def find_endpoint(
     reads = Signal(range(READ_LATENCY + 1))  # under way, since the scan began or went on
     last = shown == many - 1
     with m.State("SCAN"):
-        m.d.comb += port.addr.eq(peers.endpoint(step, tables.KEY))
+        m.d.comb += address.eq(peers.endpoint(step, tables.KEY))
         m.d.sync += [step.eq(step + 1), addressed.eq(step), shown.eq(addressed)]
         with m.If(reads != READ_LATENCY):
             m.d.sync += reads.eq(reads + 1)
-        with m.Elif((port.data == key) & matched.bit_select(shown, 1)):
-            m.d.comb += port.addr.eq(peers.endpoint(shown, tables.INFO))
+        with m.Elif((given == key) & matched.bit_select(shown, 1)):
+            m.d.comb += address.eq(peers.endpoint(shown, tables.INFO))
             m.d.sync += [endpoint.eq(shown), step.eq(shown + 1), reads.eq(0), shown.eq(shown)]
             m.next = "INFO"
         with m.Elif(last):
@@ -50,12 +49,20 @@ def find_endpoint(
     with m.State("INFO"):
         m.next = "CHECK"
     with m.State("CHECK"):
-        m.d.sync += info.eq(port.data)
+        m.d.sync += info.eq(given)
         m.next = "SCAN"
-        ours = (port.data[tables.INFO_SLOT : tables.INFO_SLOT + 8] == slot) & (
-            port.data[tables.INFO_WRITER] == writer
+        ours = (given[tables.INFO_SLOT : tables.INFO_SLOT + 8] == slot) & (
+            given[tables.INFO_WRITER] == writer
         )
         m.d.sync += found.eq(ours)
         with m.If(ours | last):
             m.d.sync += step.eq(0)
             m.next = then
+
+
+def lowest(bits: Value) -> Value:
+    """The number of the lowest bit that is high; of none, 0."""
+    number: Value = C(0, 1)
+    for n in reversed(range(len(bits))):
+        number = Mux(bits[n], n, number)
+    return number

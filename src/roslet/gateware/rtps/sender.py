@@ -13,8 +13,9 @@ from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.composer import SUBJECT
 from roslet.gateware.rtps.ports import READ_LATENCY, ReadSignature, WriteSignature
 from roslet.gateware.rtps.rom import REGISTER_BITS, Register, Rom
+from roslet.gateware.rtps.scan import lowest
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
-from roslet.gateware.rtps.turns import JOB, first
+from roslet.gateware.rtps.turns import JOB
 from roslet.gateware.words import MessageSignature
 from roslet.wire.rtps import locator
 
@@ -224,7 +225,7 @@ class Sender(wiring.Component):
                     m.d.sync += [self._publishing.eq(1), subject.builtin.eq(0)]
                     if self._users > 1:
                         later = Cat(pending[n] & (self._local < n) for n in range(self._users))
-                        m.d.sync += self._local.eq(Mux(later.any(), first(later), first(pending)))
+                        m.d.sync += self._local.eq(Mux(later.any(), lowest(later), lowest(pending)))
                     else:
                         m.d.sync += self._local.eq(0)
                     m.next = "PUBLISH"

@@ -217,7 +217,8 @@ class Submessages(wiring.Component):
             find_endpoint(
                 m,
                 self._peers,
-                self.peers,
+                self.peers.addr,
+                self.peers.data,
                 self.matched,
                 word,
                 meta.slot,

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
+from amaranth.hdl import C, Cat, Module, Mux, Signal
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.ports import DueSignature
+from roslet.gateware.rtps.scan import lowest
 from roslet.gateware.rtps.tables import PeerMap
 
 JOB = data.StructLayout({"user": 1, "index": 8, "asked": 1, "greet": 1, "announce": 1})
@@ -70,7 +71,7 @@ class Turns(wiring.Component):
                 with m.If(user == n):
                     m.d.sync += vector.bit_select(index, 1).eq(0)
             with m.If(~found & greetings.any()):
-                slot = first(greetings)
+                slot = lowest(greetings)
                 m.d.sync += [job.greet.eq(1), job.index.eq(slot), greetings.bit_select(slot, 1).eq(0)]
             with m.Elif(~found & announcing):
                 m.d.sync += [job.announce.eq(1), announcing.eq(0)]
@@ -88,11 +89,3 @@ class Turns(wiring.Component):
         with m.If(self.sweep):
             m.d.sync += sweep.eq(1)
         return m
-
-
-def first(bits: Value) -> Value:
-    """The number of the first bit that is high."""
-    number: Value = C(0, 1)
-    for n in reversed(range(len(bits))):
-        number = Mux(bits[n], n, number)
-    return number

@@ -4,37 +4,41 @@ from __future__ import annotations
 
 import ipaddress
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
-from amaranth.hdl import C, ClockDomain, ClockSignal, DomainRenamer, Module
-from amaranth.lib import memory, wiring
-from amaranth.lib.cdc import ResetSynchronizer
-from amaranth.lib.wiring import In, Out, connect, flipped
+from amaranth.hdl import Module
+from amaranth.lib import memory
+from amaranth.lib.wiring import connect
 
-from roslet.gateware.drops import DropCounters
-from roslet.gateware.fifo import FrameFifo
-from roslet.gateware.mac import Mac, PhyReset, phy_clock
+from roslet.gateware.mac import Mac
+from roslet.gateware.multicast import number
 from roslet.gateware.rtps.participant import Participant
 from roslet.gateware.rtps.rom import entity_id
 from roslet.gateware.rtps.tables import Local
 from roslet.gateware.rtps.timers import Timers
 from roslet.gateware.stack import UdpStack
+from roslet.gateware.tops.ethernet_node import EthernetNode
 from roslet.gateware.udp import PortSwitch
+from roslet.gateware.wires import expose
 from roslet.wire import discovery_info
-from roslet.wire.net import icmp
+from roslet.wire.net import ethernet, icmp, ipv4, udp
 from roslet.wire.rtps import guid, locator
 
-PHY_RESET = 10e-6
-"""Seconds. PHYs ask for 1 us (DP83848) or less."""
+ARP_TRIES, ARP_INTERVAL, ARP_TIMEOUT = 4, 0.5, 30.0
+"""How often, and how many seconds apart, a hardware address is asked for; and seconds for which it is remembered."""
+FRAGMENT = ethernet.MTU - ipv4.SIZE
+FRAGMENT_EXPIRATION = 1.0
+"""Seconds for which fragments wait for the others."""
+NODE = ("room", "alive", "matched")
+"""Ports of the participant, beside messages, that are the node's."""
 
 
 @dataclass(frozen=True)
 class Identity:
     """Who a node is: its name, and where it is on the network.
 
-    `mac` as in 02:00:00:00:00:01, `address` with its prefix length. `guid_prefix`, 12 octets, must differ between nodes, and
-    had better differ between the lives of a node: what is empty is made of the vendor, `mac` and `session`.
+    `mac` as in 02:00:00:00:00:01, `address` with its prefix length. A node that is reset must be somebody else, or peers
+    take its numbers for old ones: `session`, of 32 bits, had better differ then.
     """
 
     name: str
@@ -45,20 +49,21 @@ class Identity:
     address: str = "192.168.1.100/24"
     gateway: str = "0.0.0.0"
     session: int = 0
-    guid_prefix: bytes = b""
-    interface: Any = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "interface", ipaddress.IPv4Interface(self.address))
-        if not self.guid_prefix:
-            made = (
-                guid.VENDORID_ROSLET
-                + bytes.fromhex(self.mac.replace(":", ""))
-                + self.session.to_bytes(4, "big")
-            )
-            object.__setattr__(self, "guid_prefix", made)
-        if len(self.guid_prefix) != 12:
-            raise ValueError(f"a GUID prefix has 12 octets, not {len(self.guid_prefix)}")
+    @property
+    def hardware(self) -> bytes:
+        """The octets of `mac`."""
+        return bytes.fromhex(self.mac.replace(":", ""))
+
+    @property
+    def interface(self) -> ipaddress.IPv4Interface:
+        """`address` as address and network. Raises ValueError where it is none."""
+        return ipaddress.IPv4Interface(self.address)
+
+    @property
+    def guid_prefix(self) -> bytes:
+        """Of the vendor, the hardware address, and the session."""
+        return guid.VENDORID_ROSLET + self.hardware + self.session.to_bytes(4, "big")
 
     @property
     def ports(self) -> tuple[int, int, int]:
@@ -80,12 +85,13 @@ class Identity:
         return whole.emit()[4:]
 
 
-class RosCore(wiring.Component):
+class RosCore(EthernetNode):
     """A node with these topics.
 
-    `writers` and `readers` have the names of DDS. Ports: `clk`, `rst_n`, those of the PHY; `publish0` .., `receive0` ..,
-    `room`, as `Participant` has them. With `counters`, `drop_reason` and `drop_count` as `EthernetUdp` has them. What user
-    logic does is in the domain `node`, which is that of `clk`.
+    `writers` and `readers` have the names of DDS; `participants`, `endpoints` as `Participant` has them; `fragments`, of
+    which a datagram that is received may consist.
+
+    Ports: those of `EthernetNode`, and `publish0` .., `receive0` .., `room`, `alive`, `matched`, as `Participant` has them.
     """
 
     def __init__(
@@ -103,6 +109,7 @@ class RosCore(wiring.Component):
     ) -> None:
         self.identity = identity
         self._clk_hz = clk_hz
+        self._payloads = fragments * FRAGMENT
         info = identity.graph(len(writers), len(readers))
         graph = Local(
             discovery_info.TOPIC,
@@ -112,15 +119,7 @@ class RosCore(wiring.Component):
             words=(len(info) + 3) // 4,
             type_hash=discovery_info.TYPE_HASH,
         )
-        self._mac = Mac(phy)
-        self._stack = UdpStack(
-            round(clk_hz),
-            groups=1,
-            cache_width=cache_width,
-            echo_data=fragments * 1480 - icmp.SIZE,
-            fragments=fragments,
-        )
-        self._participant = Participant(
+        self._participant = participant = Participant(
             writers,
             readers,
             identity.guid_prefix,
@@ -130,122 +129,60 @@ class RosCore(wiring.Component):
             ((graph, info),),
             participants,
             endpoints,
-            longest=fragments * 1480 - 8,
+            longest=self._payloads - udp.SIZE,
         )
         self._switch = PortSwitch((0, 0, 0))
         self._timers = Timers(clk_hz)
-        self._payloads = fragments * 1480
-        blocks = (
-            ("mac", self._mac),
-            ("stack", self._stack),
-            ("udp", self._switch),
-            ("rtps", self._participant),
+        members = participant.signature.members
+        self._user_ports = [
+            name for name in members if name.startswith(("publish", "receive")) or name in NODE
+        ]
+        super().__init__(
+            Mac(phy),
+            UdpStack(
+                round(clk_hz),
+                groups=1,
+                cache_width=cache_width,
+                echo_data=self._payloads - icmp.SIZE,
+                fragments=fragments,
+                fragment_size=FRAGMENT,
+            ),
+            clk_hz,
+            {"udp": self._switch, "rtps": participant},
+            {name: members[name] for name in self._user_ports},
+            counters,
         )
-        self._drops = {
-            f"{part}_{name.removeprefix('drop_')}".removeprefix("stack_"): getattr(block, name)
-            for part, block in blocks
-            for name in block.signature.members
-            if name.startswith("drop_")
-        }
-        self._counters = DropCounters(self._drops) if counters else None
-        user = {
-            name: member
-            for name, member in self._participant.signature.members.items()
-            if name.startswith(("publish", "receive")) or name in ("room", "alive", "matched")
-        }
-        self._user = user
-        members: dict[str, Any] = {
-            "clk": In(1),
-            "rst_n": In(1),
-            "phy_rx_clk": In(1),
-            "phy_tx_clk": In(1),
-            **self._mac.pins.signature.members,
-            "phy_rst_n": Out(1),
-            **user,
-        }
-        if self._counters is not None:
-            members["drop_reason"] = self._counters.signature.members["reason"]
-            members["drop_count"] = self._counters.signature.members["count"]
-        super().__init__(members)
 
-    @property
-    def reasons(self) -> dict[str, int]:
-        """The numbers of what is dropped; empty without counters."""
-        return {} if self._counters is None else self._counters.numbers
-
-    def elaborate(self, platform: object) -> Module:
-        m = Module()
-        m.domains.node = ClockDomain(local=True)
-        m.d.comb += ClockSignal("node").eq(self.clk)
-        m.submodules.reset = ResetSynchronizer(~self.rst_n, domain="node")
-        m.submodules.node = DomainRenamer("node")(self._node())
-        return m
-
-    def _node(self) -> Module:
-        m = Module()
-        phy_clock(m, "phy_rx", self.phy_rx_clk)
-        phy_clock(m, "phy_tx", self.phy_tx_clk)
-        m.submodules.phy_reset = phy_reset = PhyReset(max(1, round(PHY_RESET * self._clk_hz)))
-        m.submodules.mac, m.submodules.stack = mac, stack = self._mac, self._stack
+    def _user(self, m: Module) -> None:
+        stack, identity = self._stack, self.identity
         m.submodules.switch, m.submodules.rtps = switch, rtps = self._switch, self._participant
         m.submodules.timers = timers = self._timers
-        m.submodules.rx_queue = rx_queue = FrameFifo(2048)
-        m.submodules.tx_queue = tx_queue = FrameFifo(2)
-        for source, sink in (
-            (mac.rx, rx_queue.i),
-            (rx_queue.o, stack.rx),
-            (stack.tx, tx_queue.i),
-            (tx_queue.o, mac.tx),
-            (stack.udp_rx, switch.i),
-            (switch.o0, rtps.udp_rx),
-            (rtps.udp_tx, stack.udp_tx),
-            (rtps.lookup, stack.lookup0),
-        ):
-            connect(m, source, sink)
-        identity = self.identity
-        interface = identity.interface
+        connect(m, stack.udp_rx, switch.i)
+        connect(m, switch.o0, rtps.udp_rx)
+        connect(m, rtps.udp_tx, stack.udp_tx)
+        connect(m, rtps.lookup, stack.lookup0)
         for addresses in (stack.addresses, rtps.addresses):
             m.d.comb += [
-                addresses.mac.eq(int.from_bytes(bytes.fromhex(identity.mac.replace(":", "")), "little")),
-                addresses.ip.eq(int.from_bytes(interface.ip.packed, "little")),
-                addresses.mask.eq(int.from_bytes(interface.netmask.packed, "little")),
-                addresses.gateway.eq(
-                    int.from_bytes(ipaddress.IPv4Address(identity.gateway).packed, "little")
-                ),
+                addresses.mac.eq(number(identity.hardware)),
+                addresses.ip.eq(number(identity.interface.ip.packed)),
+                addresses.mask.eq(number(identity.interface.netmask.packed)),
+                addresses.gateway.eq(number(ipaddress.IPv4Address(identity.gateway).packed)),
             ]
         m.d.comb += [
-            self.phy_rst_n.eq(phy_reset.phy_rst_n),
-            stack.enable.eq(phy_reset.phy_rst_n),
-            timers.enable.eq(phy_reset.phy_rst_n),
             stack.groups[0].valid.eq(1),
-            stack.groups[0].ip.eq(C(int.from_bytes(locator.SPDP_MULTICAST_ADDRESS, "little"), 32)),
-            stack.retry_count.eq(4),
-            stack.retry_interval.eq(round(self._clk_hz / 2)),
-            stack.timeout.eq(round(self._clk_hz * 30)),
-            stack.expiration.eq(round(self._clk_hz)),
+            stack.groups[0].ip.eq(number(locator.SPDP_MULTICAST_ADDRESS)),
+            stack.retry_count.eq(ARP_TRIES),
+            stack.retry_interval.eq(round(self._clk_hz * ARP_INTERVAL)),
+            stack.timeout.eq(round(self._clk_hz * ARP_TIMEOUT)),
+            stack.expiration.eq(round(self._clk_hz * FRAGMENT_EXPIRATION)),
+            timers.enable.eq(self.phy_rst_n),
             rtps.tick.eq(timers.tick),
             rtps.announce.eq(timers.announce),
             rtps.sweep.eq(timers.sweep),
             *(getattr(switch, f"port{n}").eq(port) for n, port in enumerate(identity.ports)),
         ]
-        for name, member in mac.pins.signature.members.items():
-            inside, outside = getattr(mac.pins, name), getattr(self, name)
-            m.d.comb += outside.eq(inside) if member.flow == Out else inside.eq(outside)
-        for name, member in self._user.items():
-            inside, outside = getattr(rtps, name), getattr(self, name)
-            if member.is_signature:
-                if member.flow == Out:
-                    connect(m, inside, flipped(outside))
-                else:
-                    connect(m, flipped(outside), inside)
-            else:
-                m.d.comb += outside.eq(inside) if member.flow == Out else inside.eq(outside)
+        expose(m, rtps, self, self._user_ports)
         self._memory(m)
-        if self._counters is not None:
-            m.submodules.counters = counters = self._counters
-            m.d.comb += [counters.drops[name].eq(signal) for name, signal in self._drops.items()]
-            m.d.comb += [counters.reason.eq(self.drop_reason), self.drop_count.eq(counters.count)]
-        return m
 
     def _memory(self, m: Module) -> None:
         """Where fragments wait."""

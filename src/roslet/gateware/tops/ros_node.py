@@ -16,6 +16,7 @@ from roslet.gateware.tops.ros_core import Identity, RosCore
 from roslet.gateware.typed.deserializer import Deserializer
 from roslet.gateware.typed.flat import Flat
 from roslet.gateware.typed.serializer import Serializer
+from roslet.gateware.wires import expose
 from roslet.gen import runtime
 from roslet.gen.gateware import Bounds, Plan, plan
 from roslet.idl import Registry, type_hash
@@ -125,11 +126,11 @@ class RosNode(wiring.Component):
             **{one.port_name: Deserializer(self._plans[one.port_name]) for one in self._subscribers},
         }
         self._flat: dict[str, Flat] = {}
-        members: dict[str, Any] = {
-            port: member
-            for port, member in self.core.signature.members.items()
-            if not port.startswith(("publish", "receive")) and port != "room"
-        }
+        inner = self.core.signature.members
+        self._pins = [
+            name for name in inner if not name.startswith(("publish", "receive")) and name != "room"
+        ]
+        members: dict[str, Any] = {name: inner[name] for name in self._pins}
         for topic in topics:
             port = topic.port_name
             gives = isinstance(topic, Subscribe)
@@ -157,10 +158,7 @@ class RosNode(wiring.Component):
         m.d.comb += ClockSignal("user").eq(self.clk)
         m.submodules.reset = ResetSynchronizer(~self.rst_n, domain="user")
         m.submodules.core = core = self.core
-        for port, member in core.signature.members.items():
-            if port in self.signature.members:
-                inside, outside = getattr(core, port), getattr(self, port)
-                m.d.comb += outside.eq(inside) if member.flow == Out else inside.eq(outside)
+        expose(m, core, self, self._pins)
         m.submodules.typed = DomainRenamer("user")(self._typed())
         return m
 
@@ -204,7 +202,4 @@ class RosNode(wiring.Component):
             connect(m, typed, block.i)
         else:
             connect(m, block.o, typed)
-        for name, member in block.signature.members.items():
-            if name not in "io":
-                inside, outside = getattr(block, name), getattr(self, name)
-                m.d.comb += outside.eq(inside) if member.flow == Out else inside.eq(outside)
+        expose(m, block, self, (name for name in block.signature.members if name not in "io"))
