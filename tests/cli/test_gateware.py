@@ -98,7 +98,10 @@ def test_goals_follow_from_chip_and_phy(
 @pytest.mark.parametrize(
     ("words", "error"),
     [
-        (["nothing", "--target", "verilog"], "there is no design nothing: there are ethernet-udp, udp-tx-rx"),
+        (
+            ["nothing", "--target", "verilog"],
+            "there is no design nothing: there are ethernet-udp, ros2-ether, imu-node, ",
+        ),
         (["--target", "arty-a7"], "takes an example with LEDs: udp-tx-rx"),
         (["udp-tx-rx", "--target", "arty-a7", "--phy", "gmii"], "the Arty A7 has a PHY with MII"),
         (["udp-tx-rx", "--target", "arty-a7", "--frequency", "50"], "the Arty A7 has a clock of 100 MHz"),

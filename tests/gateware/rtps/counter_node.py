@@ -13,6 +13,7 @@ from amaranth.lib.cdc import ResetSynchronizer
 from amaranth.lib.wiring import In, Out
 
 from roslet.cli.gateware_sim import dropped
+from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.tables import Local
 from roslet.gateware.tops.ros_core import Identity, RosCore
 from roslet.gateware.wires import expose
@@ -24,12 +25,13 @@ from roslet.sim.wire import Wire
 
 ADDRESS = "192.168.1.100"
 TYPE = "std_msgs::msg::dds_::UInt32_"
+FIRST = 65_500
 HASH = type_hash(Registry("ros2", None), "std_msgs/msg/UInt32")
 CLOCK, PHY_CLOCK, FACTOR = 50e6, 25e6, 250.0
 
 
 class CounterNode(wiring.Component):
-    """`rate` messages a second."""
+    """`rate` messages a second, whose sequence numbers begin behind FIRST: soon they have more than 16 bits."""
 
     def __init__(self, clk_hz: float, rate: float, reliable: bool, depth: int = 4) -> None:
         self._period = round(clk_hz / rate)
@@ -40,6 +42,8 @@ class CounterNode(wiring.Component):
             clk_hz,
             counters=True,
         )
+        participant = self._core._participant
+        participant._init[participant.own_map.writer_address(0, tables.WRITER_LAST)] = FIRST
         self.reasons = self._core.reasons
         members = self._core.signature.members
         self._pins = [name for name in members if name in ("clk", "rst_n", "alive", "matched")]

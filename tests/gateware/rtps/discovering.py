@@ -70,8 +70,8 @@ class Node:
         block = self.block
         while True:
             _, _, due, proxy, greet, slot, *high = await ctx.tick().sample(
-                block.due,
-                block.due_proxy,
+                block.due.en,
+                block.due.proxy,
                 block.greet,
                 block.greet_slot,
                 *(getattr(block, f"drop_{name}") for name in DROPS),

@@ -1,13 +1,14 @@
 """The counting node on a TAP device, in the time of the wall clock: on_tap.py SECONDS [pcap FILE].
 
 Prints one JSON line each time something changed: the participants and endpoints it knows, how many messages it received and
-the last of them, what it dropped.
+the last of them, what it dropped. Silent, in reset, after SIGUSR1, until SIGUSR2.
 """
 
 from __future__ import annotations
 
 import json
 import pathlib
+import signal
 import subprocess
 import sys
 from typing import Any
@@ -36,6 +37,8 @@ def main() -> None:
         capture = wire.capture(pathlib.Path(sys.argv[3])) if len(sys.argv) > 3 else None
         node.model.set("enable", 1)
         print("up", flush=True)
+        for number, level in ((signal.SIGUSR1, 0), (signal.SIGUSR2, 1)):
+            signal.signal(number, lambda *_, level=level: node.model.set("rst_n", level))
         said: dict[str, Any] = {}
         while wire.now < seconds:
             wire.run(LOOK)

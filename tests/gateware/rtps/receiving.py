@@ -48,7 +48,7 @@ class Receiver:
         block = self.block
         while True:
             _, _, due, proxy, *high = await ctx.tick().sample(
-                block.due, block.due_proxy, *(getattr(block, f"drop_{name}") for name in DROPS)
+                block.due.en, block.due.proxy, *(getattr(block, f"drop_{name}") for name in DROPS)
             )
             if due:
                 self._due.append(proxy)

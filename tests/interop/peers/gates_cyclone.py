@@ -1,4 +1,8 @@
-"""A CycloneDDS peer: gates_cyclone.py NAME SECONDS. Reads `rt/count`, writes `rt/shown`, and prints what it sees."""
+"""CycloneDDS beside the node in gates: gates_cyclone.py NAME SECONDS [MODE].
+
+Reads `rt/count`, writes `rt/shown`, and prints what it sees. In mode `many` ten participants do; in mode `again` a new
+participant, which comes when the one before has had a message, and has gone.
+"""
 
 import json
 import signal
@@ -15,27 +19,55 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
+MANY = 10
+
 
 @dataclass
 class UInt32_(IdlStruct, typename="std_msgs::msg::dds_::UInt32_"):  # noqa: N801 - ROS's name on the wire
     data: uint32
 
 
-qos = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(10))
-participant = DomainParticipant(0)
-reader = DataReader(participant, Topic(participant, "rt/count", UInt32_), qos=qos)
-writer = DataWriter(participant, Topic(participant, "rt/shown", UInt32_), qos=qos)
+QOS = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(10))
+
+
+class Peer:
+    def __init__(self):
+        self.participant = DomainParticipant(0)
+        self.reader = DataReader(self.participant, Topic(self.participant, "rt/count", UInt32_), qos=QOS)
+        self.writer = DataWriter(self.participant, Topic(self.participant, "rt/shown", UInt32_), qos=QOS)
+        self.got = []
+
+    def look(self):
+        self.got += [one.data for one in self.reader.take(10) if getattr(one, "data", None) is not None]
+        return self.got
+
+    def matched(self):
+        return len(self.writer.get_matched_subscriptions())
+
+
+def say(**values):
+    print(json.dumps(values), flush=True)
+
+
+mode = sys.argv[3] if len(sys.argv) > 3 else "one"
 ends = time.monotonic() + float(sys.argv[2])
 stopped = []
 signal.signal(signal.SIGINT, lambda *_: stopped.append(True))
-got = []
-number, due = 0, 0.0
+peers = [Peer() for _ in range(MANY if mode == "many" else 1)]
+number, came, due = 0, 0, 0.0
 while time.monotonic() < ends and not stopped:
-    got += [one.data for one in reader.take(10) if getattr(one, "data", None) is not None]
-    if time.monotonic() > due:
+    for peer in peers:
+        peer.look()
+    if mode == "again" and peers[0].got:
+        came += 1
+        say(came=came)
+        peers = []
+        peers = [Peer()]
+    elif time.monotonic() > due:
         due = time.monotonic() + 0.2
         number += 1
-        writer.write(UInt32_(data=1000 + number))
-        print(json.dumps({"got": got, "subscribers": len(writer.get_matched_subscriptions())}), flush=True)
+        peers[0].writer.write(UInt32_(data=1000 + number))
+        first = peers[0]
+        say(got=first.got, subscribers=first.matched(), all=[len(peer.got) for peer in peers], came=came)
     time.sleep(0.02)
-del reader, writer, participant
+del peers

@@ -46,7 +46,7 @@ class Composer(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         m.submodules.rom = rom = memory.Memory(
-            shape=WORD_BITS, depth=len(self._rom.words), init=self._rom.init()
+            shape=WORD_BITS, depth=len(self._rom.words), init=self._rom.words
         )
         read = rom.read_port()
         subject = self.subject

@@ -9,7 +9,7 @@ from amaranth.lib.wiring import In, Out, connect, flipped
 from roslet.gateware.meta import ADDRESSES
 from roslet.gateware.rtps import ports, tables
 from roslet.gateware.rtps.parameters import Parameters
-from roslet.gateware.rtps.ports import DISCOVERY, READ_LATENCY, ReadSignature, WriteSignature
+from roslet.gateware.rtps.ports import DISCOVERY, READ_LATENCY, DueSignature, ReadSignature, WriteSignature
 from roslet.gateware.rtps.scan import find_endpoint, lowest
 from roslet.gateware.rtps.tables import MAX_HISTORY, OwnMap, PeerMap
 from roslet.gateware.words import MessageSignature
@@ -21,8 +21,8 @@ class Discovery(wiring.Component):
 
     Ports: `i`, parameter lists (`Submessages`); `alive` and `matched`, a bit for each participant and user proxy there is;
     `peers`, `own`, read ports, and `write`; `addresses`, `domain`, ours; `heard` with `heard_slot`, a sign of life; `tick`,
-    high for a cycle each second; `hold` and `idle`, of the walker, which waits while leases are looked at; `due` with
-    `due_proxy`, something must be sent for it; `greet` with `greet_slot`, this participant must hear of us, as it is new.
+    high for a cycle each second; `hold` and `idle`, of the walker, which waits while leases are looked at; `due`,
+    something must be sent for a proxy; `greet` with `greet_slot`, this participant must hear of us, as it is new.
 
     - A participant that announces itself has the first free slot, with proxies of its discovery endpoints, from which all
       is wanted and to which all is sent. Its next announcements, in other datagrams, move it. It goes, and its endpoints
@@ -54,8 +54,7 @@ class Discovery(wiring.Component):
                 "tick": In(1),
                 "hold": Out(1),
                 "idle": In(1),
-                "due": Out(1),
-                "due_proxy": Out(peers.proxy_bits),
+                "due": Out(DueSignature(peers.proxy_bits)),
                 "greet": Out(1),
                 "greet_slot": Out(8),
                 **{f"drop_{name}": Out(1) for name in ("full", "incomplete", "refused", "qos", "malformed")},
@@ -254,8 +253,8 @@ class Discovery(wiring.Component):
             )
             self._write(m, peers.builtin(slot, kind, word), value)
             m.d.comb += [
-                self.due.eq(step[:2] == 3),
-                self.due_proxy.eq(Cat(kind, slot)[: len(self.due_proxy) - 1]),
+                self.due.en.eq(step[:2] == 3),
+                self.due.proxy.eq(Cat(kind, slot)[: len(self.due.proxy) - 1]),
             ]
             m.d.sync += step.eq(step + 1)
             with m.If(step[:4] == 15):
@@ -359,7 +358,7 @@ class Discovery(wiring.Component):
             with m.If(step == len(words) - 1 + READ_LATENCY):
                 m.d.sync += self.matched.bit_select(endpoint, 1).eq(1)
                 m.d.comb += [
-                    self.due.eq(1),
-                    self.due_proxy.eq(Cat(endpoint, C(0, len(self.due_proxy) - 1 - len(endpoint)), C(1, 1))),
+                    self.due.en.eq(1),
+                    self.due.proxy.eq(Cat(endpoint, C(0, len(self.due.proxy) - 1 - len(endpoint)), C(1, 1))),
                 ]
                 m.next = "PROCEED"

@@ -143,6 +143,8 @@ class Participant(wiring.Component):
         connect(m, queue.o, walker.i)
         connect(m, walker.o, submessages.i)
         connect(m, submessages.discovery, discovery.i)
+        connect(m, discovery.due, turns.due0)
+        connect(m, submessages.due, turns.due1)
         connect(m, outbox.o, flipped(self.udp_tx))
         connect(m, outbox.lookup, flipped(self.lookup))
         for n in range(self._users):
@@ -171,10 +173,6 @@ class Participant(wiring.Component):
             submessages.over.eq(walker.idle),
             *(block.alive.eq(discovery.alive) for block in (submessages, turns)),
             *(block.matched.eq(discovery.matched) for block in (submessages, turns, sender)),
-            turns.due0.en.eq(discovery.due),
-            turns.due0.proxy.eq(discovery.due_proxy),
-            turns.due1.en.eq(submessages.due),
-            turns.due1.proxy.eq(submessages.due_proxy),
             turns.greet.eq(discovery.greet),
             turns.greet_slot.eq(discovery.greet_slot),
             turns.announce.eq(self.announce),

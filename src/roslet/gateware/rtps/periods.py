@@ -6,8 +6,9 @@ from amaranth.hdl import Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from roslet.gateware.rtps.timers import QUICK
-
+QUICK = 5
+"""Announcements at once at start, QUICK_PERIOD seconds apart."""
+QUICK_PERIOD = 0.1
 BITS = 32
 PRESCALER_BITS = 16
 

@@ -144,9 +144,6 @@ class Rom:
         self.start[name], self.size[name] = len(self.words), len(items)
         self.words += [op.value << 32 | argument for op, argument in (*items, (Op.END, 0))]
 
-    def init(self) -> list[int]:
-        return self.words
-
     def _data(
         self,
         ids: tuple[bytes | Item, bytes | Item],

@@ -9,7 +9,15 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.rtps import ports, tables
-from roslet.gateware.rtps.ports import DISCOVERY, SUBMESSAGE, USER, ReadSignature, WriteSignature, exchanged
+from roslet.gateware.rtps.ports import (
+    DISCOVERY,
+    SUBMESSAGE,
+    USER,
+    DueSignature,
+    ReadSignature,
+    WriteSignature,
+    exchanged,
+)
 from roslet.gateware.rtps.scan import find_endpoint
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 from roslet.gateware.words import MessageSignature
@@ -44,8 +52,8 @@ class Submessages(wiring.Component):
     Ports: `i`, bodies of submessages (`Walker`); `user`, messages for our readers; `discovery`, parameter lists of
     participants and endpoints; `room`, a bit for each of our readers: whoever takes its messages can take a whole one now,
     and waits with it for no longer than it takes to store; `over`, no datagram is passing; `alive`, `matched`, the
-    participants and user proxies that there are; `peers`, a read port, and `write`; `due` is high for a cycle when something
-    must be sent on behalf of proxy `due_proxy`.
+    participants and user proxies that there are; `peers`, a read port, and `write`; `due`, something must be
+    sent for a proxy.
 
     A message's words go out before it is known that its datagram is good, and its end says so. What is kept is changed
     only at a good end:
@@ -79,8 +87,7 @@ class Submessages(wiring.Component):
                 "matched": In(peers.endpoints),
                 "peers": Out(ReadSignature(peers.address_bits)),
                 "write": Out(WriteSignature(peers.address_bits)),
-                "due": Out(1),
-                "due_proxy": Out(peers.proxy_bits),
+                "due": Out(DueSignature(peers.proxy_bits)),
                 **{f"drop_{name}": Out(1) for name in ("unmatched", "old", "early", "busy", "invalid")},
             }
         )
@@ -130,10 +137,10 @@ class Submessages(wiring.Component):
         index = Mux(builtin, Cat(builtin_kind, meta.slot), endpoint)[: self._peers.index_bits]
         proxy = Cat(index, C(0, self._peers.index_bits - len(index)), ~builtin)
         # Is to be asked for when this datagram is over
-        more, more_proxy = Signal(), Signal.like(self.due_proxy)
-        m.d.comb += self.due_proxy.eq(proxy)
+        more, more_proxy = Signal(), Signal.like(self.due.proxy)
+        m.d.comb += self.due.proxy.eq(proxy)
         with m.If(more & self.over):
-            m.d.comb += [self.due.eq(1), self.due_proxy.eq(more_proxy)]
+            m.d.comb += [self.due.en.eq(1), self.due.proxy.eq(more_proxy)]
             m.d.sync += more.eq(0)
 
         def at(what: int | Value) -> Value:
@@ -400,7 +407,7 @@ class Submessages(wiring.Component):
                     m.next = "IDLE"
                 with m.Elif(good):
                     m.d.comb += put(tables.LAST, last_lo)
-                    m.d.comb += self.due.eq((~(meta.flags & FLAG_F).any() | missing) & reliable)
+                    m.d.comb += self.due.en.eq((~(meta.flags & FLAG_F).any() | missing) & reliable)
                     m.next = "WRITE LOW"
                 with m.Elif(ended):
                     m.next = "INVALID"
@@ -454,7 +461,7 @@ class Submessages(wiring.Component):
                 m.next = "ASK TO"
             with m.State("ASK TO"):
                 m.d.comb += put(tables.ASK_TO, wanted)
-                m.d.comb += [self.due.eq((skip != 0) | ~(meta.flags & FLAG_F).any()), i.ready.eq(1)]
+                m.d.comb += [self.due.en.eq((skip != 0) | ~(meta.flags & FLAG_F).any()), i.ready.eq(1)]
                 m.next = "IDLE"
         return m
 

@@ -11,10 +11,9 @@ from roslet.gateware.meta import UDP_TX
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.loader import Loader, Store
 from roslet.gateware.rtps.participant import Participant
-from roslet.gateware.rtps.periods import BITS, PRESCALER_BITS, Periods
+from roslet.gateware.rtps.periods import BITS, PRESCALER_BITS, QUICK_PERIOD, Periods
 from roslet.gateware.rtps.rom import entity_id
 from roslet.gateware.rtps.tables import Local
-from roslet.gateware.rtps.timers import QUICK_PERIOD
 from roslet.gateware.tops.app_data import AppDataRx, AppDataTx
 from roslet.gateware.tops.ethernet_udp import EthernetUdp
 from roslet.gateware.udp import PortSwitch

@@ -13,9 +13,9 @@ from amaranth.lib.wiring import connect
 from roslet.gateware.mac import Mac
 from roslet.gateware.multicast import number
 from roslet.gateware.rtps.participant import Participant
+from roslet.gateware.rtps.periods import QUICK_PERIOD, Periods
 from roslet.gateware.rtps.rom import entity_id
 from roslet.gateware.rtps.tables import Local
-from roslet.gateware.rtps.timers import Timers
 from roslet.gateware.stack import UdpStack
 from roslet.gateware.tops.ethernet_node import EthernetNode
 from roslet.gateware.udp import PortSwitch
@@ -26,6 +26,10 @@ from roslet.wire.rtps import guid, locator
 
 ARP_TRIES, ARP_INTERVAL, ARP_TIMEOUT = 4, 0.5, 30.0
 """How often, and how many seconds apart, a hardware address is asked for; and seconds for which it is remembered."""
+ANNOUNCEMENT, REMINDER = 3.0, 0.1
+"""Seconds between announcements, and between reminders of what has not been acknowledged."""
+STEP = 64
+"""Cycles in which periods are counted: the manual's PRESCALER_DIV."""
 FRAGMENT = ethernet.MTU - ipv4.SIZE
 FRAGMENT_EXPIRATION = 1.0
 """Seconds for which fragments wait for the others."""
@@ -132,7 +136,7 @@ class RosCore(EthernetNode):
             longest=self._payloads - udp.SIZE,
         )
         self._switch = PortSwitch((0, 0, 0))
-        self._timers = Timers(clk_hz)
+        self._periods = Periods(round(clk_hz), self._steps(QUICK_PERIOD))
         members = participant.signature.members
         self._user_ports = [
             name for name in members if name.startswith(("publish", "receive")) or name in NODE
@@ -153,10 +157,14 @@ class RosCore(EthernetNode):
             counters,
         )
 
+    def _steps(self, seconds: float) -> int:
+        """So many steps of `Periods`."""
+        return max(1, round(seconds * self._clk_hz / STEP))
+
     def _user(self, m: Module) -> None:
         stack, identity = self._stack, self.identity
         m.submodules.switch, m.submodules.rtps = switch, rtps = self._switch, self._participant
-        m.submodules.timers = timers = self._timers
+        m.submodules.periods = periods = self._periods
         connect(m, stack.udp_rx, switch.i)
         connect(m, switch.o0, rtps.udp_rx)
         connect(m, rtps.udp_tx, stack.udp_tx)
@@ -175,10 +183,13 @@ class RosCore(EthernetNode):
             stack.retry_interval.eq(round(self._clk_hz * ARP_INTERVAL)),
             stack.timeout.eq(round(self._clk_hz * ARP_TIMEOUT)),
             stack.expiration.eq(round(self._clk_hz * FRAGMENT_EXPIRATION)),
-            timers.enable.eq(self.phy_rst_n),
-            rtps.tick.eq(timers.tick),
-            rtps.announce.eq(timers.announce),
-            rtps.sweep.eq(timers.sweep),
+            periods.enable.eq(self.phy_rst_n),
+            periods.prescaler_div.eq(STEP),
+            periods.announcement.eq(self._steps(ANNOUNCEMENT)),
+            *(period.eq(self._steps(REMINDER)) for period in (periods.sweep0, periods.sweep1)),
+            rtps.tick.eq(periods.tick),
+            rtps.announce.eq(periods.announce),
+            rtps.sweep.eq(periods.sweep),
             *(getattr(switch, f"port{n}").eq(port) for n, port in enumerate(identity.ports)),
         ]
         expose(m, rtps, self, self._user_ports)
