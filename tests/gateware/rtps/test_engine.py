@@ -53,3 +53,24 @@ def test_reliable_topics_lose_and_repeat_nothing_both_ways(faults: str) -> None:
         # The node keeps four: what a peer missed for longer is gone, and the peer is told so.
         assert len(got) == sent if faults == "none" else len(got) > sent * 0.8
         assert node.model.get("count") == 40
+
+
+def test_a_node_that_was_reset_is_somebody_else_and_is_heard_from_its_first_message_on() -> None:
+    wire = Wire(FACTOR)
+    with Running(reliable=True, wire=wire) as node:
+        peer = ParticipantStation(2, wire.hub.port())
+        wire.add(peer)
+        peer.participant.create_reader("rt/count", TYPE, RELIABLE, 0.0)
+        node.model.set("enable", 1)
+
+        def found(kind: type) -> list[Any]:
+            return [one for one in peer.events if isinstance(one, kind)]
+
+        assert wire.run(20.0, lambda: len(found(events.SampleReceived)) >= 3)
+        node.model.set("rst_n", 0)
+        wire.run(0.1)
+        before = len(found(events.SampleReceived))
+        node.model.set("rst_n", 1)
+        assert wire.run(20.0, lambda: len(found(events.SampleReceived)) >= before + 3)
+        one, other = (event.data.guid for event in found(events.ParticipantDiscovered))
+        assert one[:8] == other[:8] and one != other

@@ -4,6 +4,7 @@ Reads `rt/count`, writes `rt/shown`, and prints what it sees. In mode `many` ten
 participant, which comes when the one before has had a message, and has gone.
 """
 
+import gc
 import json
 import signal
 import sys
@@ -53,21 +54,27 @@ mode = sys.argv[3] if len(sys.argv) > 3 else "one"
 ends = time.monotonic() + float(sys.argv[2])
 stopped = []
 signal.signal(signal.SIGINT, lambda *_: stopped.append(True))
-peers = [Peer() for _ in range(MANY if mode == "many" else 1)]
-number, came, due = 0, 0, 0.0
+
+
+def live(peers, number, came):
+    """Until it is time to end, or, in mode `again`, a message has come; returns the number of the next one to write."""
+    due = 0.0
+    while time.monotonic() < ends and not stopped:
+        got = [peer.look() for peer in peers]
+        if mode == "again" and got[0]:
+            break
+        if time.monotonic() > due:
+            due = time.monotonic() + 0.2
+            number += 1
+            peers[0].writer.write(UInt32_(data=1000 + number))
+            say(got=got[0], subscribers=peers[0].matched(), all=[len(one) for one in got], came=came)
+        time.sleep(0.02)
+    return number
+
+
+number = came = 0
 while time.monotonic() < ends and not stopped:
-    for peer in peers:
-        peer.look()
-    if mode == "again" and peers[0].got:
-        came += 1
-        say(came=came)
-        peers = []
-        peers = [Peer()]
-    elif time.monotonic() > due:
-        due = time.monotonic() + 0.2
-        number += 1
-        peers[0].writer.write(UInt32_(data=1000 + number))
-        first = peers[0]
-        say(got=first.got, subscribers=first.matched(), all=[len(peer.got) for peer in peers], came=came)
-    time.sleep(0.02)
-del peers
+    number = live([Peer() for _ in range(MANY if mode == "many" else 1)], number, came)
+    gc.collect()  # who is gone says so now
+    came += 1
+    say(came=came, got=[], all=[])

@@ -9,8 +9,8 @@ import sys
 import time
 
 import rclpy
-from rclpy.event_handler import QoSPolicyKind, SubscriptionEventCallbacks
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.qos import DurabilityPolicy, QoSPolicyKind, QoSProfile
 from std_msgs.msg import UInt32
 
 name, seconds = sys.argv[1], float(sys.argv[2])

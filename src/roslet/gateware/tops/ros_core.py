@@ -6,12 +6,14 @@ import ipaddress
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from amaranth.hdl import Module
+from amaranth.hdl import Module, ResetInserter, Signal
 from amaranth.lib import memory
 from amaranth.lib.wiring import connect
 
 from roslet.gateware.mac import Mac
 from roslet.gateware.multicast import number
+from roslet.gateware.rtps import tables
+from roslet.gateware.rtps.loader import Loader
 from roslet.gateware.rtps.participant import Participant
 from roslet.gateware.rtps.periods import QUICK_PERIOD, Periods
 from roslet.gateware.rtps.rom import entity_id
@@ -33,6 +35,8 @@ STEP = 64
 FRAGMENT = ethernet.MTU - ipv4.SIZE
 FRAGMENT_EXPIRATION = 1.0
 """Seconds for which fragments wait for the others."""
+SILENCE = 1.0
+"""Seconds for which a node waits for somebody else to speak, before it does."""
 NODE = ("room", "alive", "matched")
 """Ports of the participant, beside messages, that are the node's."""
 
@@ -41,8 +45,7 @@ NODE = ("room", "alive", "matched")
 class Identity:
     """Who a node is: its name, and where it is on the network.
 
-    `mac` as in 02:00:00:00:00:01, `address` with its prefix length. A node that is reset must be somebody else, or peers
-    take its numbers for old ones: `session`, of 32 bits, had better differ then.
+    `mac` as in 02:00:00:00:00:01, `address` with its prefix length.
     """
 
     name: str
@@ -52,7 +55,6 @@ class Identity:
     mac: str = "02:00:00:00:00:01"
     address: str = "192.168.1.100/24"
     gateway: str = "0.0.0.0"
-    session: int = 0
 
     @property
     def hardware(self) -> bytes:
@@ -66,8 +68,8 @@ class Identity:
 
     @property
     def guid_prefix(self) -> bytes:
-        """Of the vendor, the hardware address, and the session."""
-        return guid.VENDORID_ROSLET + self.hardware + self.session.to_bytes(4, "big")
+        """Of the vendor and the hardware address; the last four octets are of the session, and zero here."""
+        return guid.VENDORID_ROSLET + self.hardware + bytes(4)
 
     @property
     def ports(self) -> tuple[int, int, int]:
@@ -94,6 +96,9 @@ class RosCore(EthernetNode):
 
     `writers` and `readers` have the names of DDS; `participants`, `endpoints` as `Participant` has them; `fragments`, of
     which a datagram that is received may consist.
+
+    A node that is reset is somebody else then, or peers would take its first numbers for old ones: in the end of its GUID
+    prefix is the cycle, counted since the power is on, in which the first frame came; or that of SILENCE after its reset.
 
     Ports: those of `EthernetNode`, and `publish0` .., `receive0` .., `room`, `alive`, `matched`, as `Participant` has them.
     """
@@ -136,6 +141,7 @@ class RosCore(EthernetNode):
             longest=self._payloads - udp.SIZE,
         )
         self._switch = PortSwitch((0, 0, 0))
+        self._loader = self._session(participant, identity, info)
         self._periods = Periods(round(clk_hz), self._steps(QUICK_PERIOD))
         members = participant.signature.members
         self._user_ports = [
@@ -157,13 +163,27 @@ class RosCore(EthernetNode):
             counters,
         )
 
+    @staticmethod
+    def _session(participant: Participant, identity: Identity, info: bytes) -> Loader:
+        """What writes the number of the session wherever our GUID prefix stands in the node's memory."""
+        own = participant.own_map
+        prefix = identity.guid_prefix
+        last = len(prefix) // 4 - 1
+        at = own.samples[-1] + 1  # of the graph's message, behind its length
+        found = [at + n // 4 + last for n in range(0, len(info), 4) if info[n:].startswith(prefix)]
+        places = [own.own(tables.OWN_PREFIX) + last, *found]
+        return Loader([(place, 0, False) for place in places], 1, own.address_bits, 1)
+
     def _steps(self, seconds: float) -> int:
         """So many steps of `Periods`."""
         return max(1, round(seconds * self._clk_hz / STEP))
 
     def _user(self, m: Module) -> None:
         stack, identity = self._stack, self.identity
-        m.submodules.switch, m.submodules.rtps = switch, rtps = self._switch, self._participant
+        rtps = self._participant
+        running = Signal()
+        m.submodules.switch = switch = self._switch
+        m.submodules.rtps = ResetInserter(~running)(rtps)
         m.submodules.periods = periods = self._periods
         connect(m, stack.udp_rx, switch.i)
         connect(m, switch.o0, rtps.udp_rx)
@@ -183,7 +203,7 @@ class RosCore(EthernetNode):
             stack.retry_interval.eq(round(self._clk_hz * ARP_INTERVAL)),
             stack.timeout.eq(round(self._clk_hz * ARP_TIMEOUT)),
             stack.expiration.eq(round(self._clk_hz * FRAGMENT_EXPIRATION)),
-            periods.enable.eq(self.phy_rst_n),
+            periods.enable.eq(running),
             periods.prescaler_div.eq(STEP),
             periods.announcement.eq(self._steps(ANNOUNCEMENT)),
             *(period.eq(self._steps(REMINDER)) for period in (periods.sweep0, periods.sweep1)),
@@ -193,7 +213,24 @@ class RosCore(EthernetNode):
             *(getattr(switch, f"port{n}").eq(port) for n, port in enumerate(identity.ports)),
         ]
         expose(m, rtps, self, self._user_ports)
+        self._begin(m, running)
         self._memory(m)
+
+    def _begin(self, m: Module, running: Signal) -> None:
+        """`running` from when the number of the session is known and written."""
+        m.submodules.loader = loader = self._loader
+        rx = self._stack.rx.stream
+        cycles = Signal(32, reset_less=True)
+        session = Signal(32)
+        silence = Signal(range(round(self._clk_hz * SILENCE) + 1))
+        m.d.sync += [cycles.eq(cycles + 1), running.eq(loader.done)]
+        with m.If(self.phy_rst_n & ~loader.enable):
+            m.d.sync += [session.eq(cycles), silence.eq(silence + 1)]
+            came = rx.valid & rx.ready & rx.payload.end & ~rx.payload.bad
+            with m.If(came | (silence == round(self._clk_hz * SILENCE))):
+                m.d.sync += loader.enable.eq(1)
+        m.d.comb += loader.word.eq(session)
+        connect(m, loader.write, self._participant.own)
 
     def _memory(self, m: Module) -> None:
         """Where fragments wait."""

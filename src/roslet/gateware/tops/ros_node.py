@@ -90,7 +90,6 @@ class RosNode(wiring.Component):
         namespace: str = "/",
         gateway: str = "0.0.0.0",
         participant: int = 1,
-        session: int = 0,
         registry: Registry | None = None,
         flat: bool = False,
         **core: Any,
@@ -100,7 +99,7 @@ class RosNode(wiring.Component):
         for one in names:
             if names.count(one) > 1 or not one.isidentifier():
                 raise ValueError(f"the ports of topics have names of their own, not {one!r}")
-        identity = Identity(name, namespace, domain, participant, mac, address, gateway, session)
+        identity = Identity(name, namespace, domain, participant, mac, address, gateway)
         self._plans = {topic.port_name: topic.plan(registry) for topic in topics}
         self._publishers = [topic for topic in topics if isinstance(topic, Publish)]
         self._subscribers = [topic for topic in topics if isinstance(topic, Subscribe)]
