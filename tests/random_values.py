@@ -114,10 +114,13 @@ def fill(kind: type[MessageBase], fields: dict[str, Any]) -> MessageBase:
     for name, value in fields.items():
         spec = {row[0]: row for row in kind._spec}[attribute(name)]
         base = spec[1]
-        array = spec[2] != 0
-        setattr(
-            message, attribute(name), [_filled(base, one) for one in value] if array else _filled(base, value)
-        )
+        if spec[2] == 0:
+            made = _filled(base, value)
+        elif base == "uint8":
+            made = bytes(value)  # which classes that rclpy's programs have changed take, too
+        else:
+            made = [_filled(base, one) for one in value]
+        setattr(message, attribute(name), made)
     return message
 
 
