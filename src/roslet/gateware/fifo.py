@@ -15,6 +15,7 @@ from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.crossing import CrossingQueue
 from roslet.gateware.stream import FrameSignature
+from roslet.gateware.words import MessageSignature
 
 _WIDTH = 9
 
@@ -39,13 +40,18 @@ def _output(m: Module, queue: SyncFIFOBuffered | CrossingQueue, o: stream.Interf
 
 class FrameRegister(wiring.Component):
     """Two places in registers between `i` and `o`, both with `meta`: no path leads through, neither of items nor of `ready`.
+    For frames of octets, or, with `signature` MessageSignature, messages of words.
 
     `meta` passes as it is, and is not kept: where there is one, an end is taken at `i` in the cycle after it was taken at
     `o`. Throughput one octet a cycle; latency one cycle.
     """
 
-    def __init__(self, meta: ShapeLike | None = None) -> None:
-        super().__init__({"i": In(FrameSignature(meta)), "o": Out(FrameSignature(meta))})
+    def __init__(
+        self,
+        meta: ShapeLike | None = None,
+        signature: type[FrameSignature | MessageSignature] = FrameSignature,
+    ) -> None:
+        super().__init__({"i": In(signature(meta)), "o": Out(signature(meta))})
 
     def elaborate(self, platform: object) -> Module:
         m = Module()

@@ -9,11 +9,12 @@ from amaranth.hdl import Cat, Module, Signal
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
+from roslet.gateware.fifo import FrameRegister
 from roslet.gateware.meta import ADDRESSES, UDP_RX, UDP_TX, LookupSignature
 from roslet.gateware.rtps.composer import Composer
 from roslet.gateware.rtps.discovery import Discovery
 from roslet.gateware.rtps.outbox import HEADER, Outbox
-from roslet.gateware.rtps.ports import USER, WriteSignature
+from roslet.gateware.rtps.ports import DISCOVERY, SUBMESSAGE, USER, WriteSignature
 from roslet.gateware.rtps.queue import DatagramQueue
 from roslet.gateware.rtps.rom import Rom
 from roslet.gateware.rtps.sender import Sender
@@ -141,8 +142,12 @@ class Participant(wiring.Component):
 
         connect(m, flipped(self.udp_rx), queue.i)
         connect(m, queue.o, walker.i)
-        connect(m, walker.o, submessages.i)
-        connect(m, submessages.discovery, discovery.i)
+        m.submodules.bodies = bodies = FrameRegister(SUBMESSAGE, MessageSignature)
+        connect(m, walker.o, bodies.i)
+        connect(m, bodies.o, submessages.i)
+        m.submodules.lists = lists = FrameRegister(DISCOVERY, MessageSignature)
+        connect(m, submessages.discovery, lists.i)
+        connect(m, lists.o, discovery.i)
         connect(m, discovery.due, turns.due0)
         connect(m, submessages.due, turns.due1)
         connect(m, outbox.o, flipped(self.udp_tx))

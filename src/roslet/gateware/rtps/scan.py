@@ -23,11 +23,11 @@ def find_endpoint(
     found: Value,
     then: str,
 ) -> None:
-    """The states SCAN, INFO and CHECK of an FSM: find participant `slot`'s writer, or reader, with entity id `key`, among
+    """The states from SCAN to CHECK of an FSM: find participant `slot`'s writer, or reader, with entity id `key`, among
     those in `matched`, by `address` and `given` of a read port.
 
     In state `then`, `found` says whether it is there; if so, it is `endpoint`, and `info` is its INFO. `found` must be low
-    before. Takes one cycle for each endpoint and two more, and four for each other endpoint with an equal id.
+    before. Takes one cycle for each endpoint and two more, and five for each other endpoint with an equal id.
     """
     many = peers.endpoints
     step = Signal(range(many + READ_LATENCY))
@@ -40,13 +40,15 @@ def find_endpoint(
         with m.If(reads != READ_LATENCY):
             m.d.sync += reads.eq(reads + 1)
         with m.Elif((given == key) & matched.bit_select(shown, 1)):
-            m.d.comb += address.eq(peers.endpoint(shown, tables.INFO))
             m.d.sync += [endpoint.eq(shown), step.eq(shown + 1), reads.eq(0), shown.eq(shown)]
             m.next = "INFO"
         with m.Elif(last):
             m.d.sync += [step.eq(0), reads.eq(0)]
             m.next = then
     with m.State("INFO"):
+        m.d.comb += address.eq(peers.endpoint(shown, tables.INFO))
+        m.next = "INFO COMES"
+    with m.State("INFO COMES"):
         m.next = "CHECK"
     with m.State("CHECK"):
         m.d.sync += info.eq(given)

@@ -96,7 +96,7 @@ class Sender(wiring.Component):
         self._publishing, self._yield, self._asked = Signal(), Signal(), Signal()
         self._is_writer, self._reliable = Signal(), Signal()  # the peer's endpoint
         self._local = Signal(8)
-        self._count, self._bitmap = Signal(32), Signal(self._window)
+        self._count = Signal(32)
         m.d.comb += self.subject.entity.eq(self._local + 1)
         self._increased = Signal(32)
         m.d.comb += self._increased.eq(self.own.data + 1)
@@ -131,6 +131,8 @@ class Sender(wiring.Component):
             age.eq(Mux((which == Register.FIRST) | (which == Register.FIRST_HIGH), self._oldest, self._age)),
             number.eq(last - age),
         ]
+        # Of the numbers from the one that is wanted on, the first in the highest bit
+        missing = Cat(self._age >= n for n in reversed(range(self._window)))
         with m.Switch(which):
             for register, value in (
                 (Register.FIRST, number[:32]),
@@ -140,7 +142,7 @@ class Sender(wiring.Component):
                 (Register.LAST, self._last),
                 (Register.LAST_HIGH, self._last_high),
                 (Register.COUNT, self._count),
-                (Register.BITMAP, Cat(C(0, 32 - self._window), self._bitmap)),
+                (Register.BITMAP, Cat(C(0, 32 - self._window), missing)),
                 (Register.ENCAPSULATION, Cat(C(CDR_LE, 24), self._padding)),
             ):
                 with m.Case(register):
@@ -148,8 +150,12 @@ class Sender(wiring.Component):
 
     def _age_of(self, number: Value) -> Value:
         """How far a number is behind the last."""
-        difference = (self._last - number)[:32]
+        difference = self._difference(number)
         return Mux(difference[31], -1, Mux(difference[15:31].any(), MAX_AGE, difference[:15])).as_signed()
+
+    def _difference(self, number: Value) -> Value:
+        """The same, whose highest bit says that the number is yet to come."""
+        return (self._last - number)[:32]
 
     def _compose(self, m: Module, template: Value | int, then: str) -> None:
         """Compose it for `ip` and `port`, when there is room, and go on."""
@@ -323,8 +329,7 @@ class Sender(wiring.Component):
             m.d.comb += self.own.addr.eq(own.own(tables.ACKNACK_COUNT))
             m.next = "MISSING"
         with m.State("MISSING"):
-            age = self._age_of(self.peers.data)
-            m.d.sync += [self._bitmap[-1 - n].eq(age >= n) for n in range(self._window)]
+            m.d.sync += self._age.eq(self._age_of(self.peers.data))
             m.next = "ACKNACK"
             with m.If(self.peers.data == 0):
                 m.next = "IDLE"  # nothing has been heard of it
@@ -367,7 +372,10 @@ class Sender(wiring.Component):
             m.d.comb += self.peers.addr.eq(self._proxy(tables.ASK_FROM))
             m.next = "ACKED"
         with m.State("ACKED"):
-            m.d.sync += [unacknowledged.eq(self._age_of(self.peers.data) >= 0), self._kept.eq(self.own.data)]
+            m.d.sync += [
+                unacknowledged.eq(~self._difference(self.peers.data)[31]),
+                self._kept.eq(self.own.data),
+            ]
             with m.If(~subject.builtin):
                 m.d.sync += self._oldest.eq((self.own.data - 1)[:16].as_signed())
             m.d.comb += self.peers.addr.eq(self._proxy(tables.ASK_TO))
@@ -379,7 +387,7 @@ class Sender(wiring.Component):
             m.next = "ASK TO"
         with m.State("ASK TO"):
             age = self._age_of(self.peers.data)
-            m.d.sync += ask_to.eq(Mux(age < 0, 0, age))
+            m.d.sync += ask_to.eq(Mux(age[-1], 0, age))
             m.next = "JUDGE"
         with m.State("JUDGE"):
             m.next = "IDLE"
@@ -458,6 +466,7 @@ class Sender(wiring.Component):
         step = Signal(range(peers.endpoints + READ_LATENCY + 1))
         addressed, shown = Signal(range(peers.endpoints)), Signal(range(peers.endpoints))
         reads = Signal(range(READ_LATENCY + 1))  # under way
+        start = Signal(AGE)
         with m.State("PUBLISH"):
             m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST))
             m.d.sync += [words.eq(0), long.eq(0), self._age.eq(0), endpoint.eq(0)]
@@ -526,11 +535,13 @@ class Sender(wiring.Component):
             with m.If(reads != READ_LATENCY):
                 m.d.sync += reads.eq(reads + 1)
             with m.Elif(ours):
-                m.d.comb += self.peers.addr.eq(peers.endpoint(shown, tables.IP))
-                m.next = "READER IP"
+                m.next = "THE READER"
             with m.Elif(shown == peers.endpoints - 1):
                 m.d.sync += self._yield.eq(1)
                 m.next = "IDLE"
+        with m.State("THE READER"):
+            m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.IP))
+            m.next = "READER IP"
         with m.State("READER IP"):
             m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.PORT))
             m.next = "READER WHERE"
@@ -542,9 +553,11 @@ class Sender(wiring.Component):
             m.d.sync += self.port.eq(self.peers.data)
             m.next = "READER START"
         with m.State("READER START"):
-            age = self._age_of(self.peers.data)
-            with m.If(age < self._oldest):
-                m.d.sync += self._oldest.eq(age)
+            m.d.sync += start.eq(self._age_of(self.peers.data))
+            m.next = "READER OLDEST"
+        with m.State("READER OLDEST"):
+            with m.If(start < self._oldest):
+                m.d.sync += self._oldest.eq(start)
             with m.If(self._reliable):
                 m.next = "HEARTBEAT"
             with m.Else():

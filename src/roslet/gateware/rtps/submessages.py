@@ -128,6 +128,7 @@ class Submessages(wiring.Component):
         endpoint = Signal(range(self._peers.endpoints))
         info = Signal(32)
         skip = Signal(15)
+        one = Signal()  # of a set, the bit that is looked at
         gone, has_key = Signal(), Signal()
         reason = Signal(2)  # why DATA is not taken
         unmatched, old, early, busy = range(4)
@@ -422,7 +423,6 @@ class Submessages(wiring.Component):
                     m.next = "INVALID"
             with m.State("GAP SET"):
                 # The run of ones at the beginning of the first word, a bit in two cycles; what is behind is asked for again.
-                one = number.bit_select(~last_lo[:5], 1)
                 with m.If(came & (skip != 0) & ~last_lo[5] & one & same):
                     m.d.sync += [
                         Cat(sn, wanted, wanted_high).eq(Cat(after, after_high, after, after_high)),
@@ -442,7 +442,9 @@ class Submessages(wiring.Component):
                     with m.Elif(ended):
                         m.next = "INVALID"
             with m.State("GAP NEXT"):
-                m.next = "GAP SET"
+                m.d.sync += one.eq(number.bit_select(~last_lo[:5], 1))
+                with m.If(i.valid):
+                    m.next = "GAP SET"
             with m.State("ACKNACK BITS"):
                 self._bits(m, number, came, ended, skip, "ACKNACK SET")
             with m.State("ACKNACK SET"):
