@@ -97,7 +97,7 @@ class Master:
         return kept
 
 
-def end(process: subprocess.Popen[Any], patience: float = 5.0) -> int:
+def end(process: subprocess.Popen[Any], patience: float = 20.0) -> int:
     """Interrupts a process of ours, kills it if it does not listen; its exit code."""
     if process.poll() is None:
         process.send_signal(signal.SIGINT)

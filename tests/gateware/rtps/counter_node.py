@@ -27,7 +27,7 @@ ADDRESS = "192.168.1.100"
 TYPE = "std_msgs::msg::dds_::UInt32_"
 FIRST = 65_500
 HASH = type_hash(Registry("ros2", None), "std_msgs/msg/UInt32")
-CLOCK, PHY_CLOCK, FACTOR = 50e6, 25e6, 250.0
+CLOCK, PHY_CLOCK, FACTOR = 25e6, 25e6, 250.0
 
 
 class CounterNode(wiring.Component):

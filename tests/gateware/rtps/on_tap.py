@@ -51,7 +51,7 @@ def main() -> None:
             }
             if now != said:
                 said = now
-                print(json.dumps(now), flush=True)
+                print(json.dumps({**now, "dropped": node.drops()}), flush=True)
         print(json.dumps({"dropped": node.drops(), "faults": node.gates.faults}), flush=True)
         if capture is not None:
             capture.close()

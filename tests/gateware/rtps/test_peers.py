@@ -26,7 +26,7 @@ pytestmark = [
 HERE = pathlib.Path(__file__).parent
 SECONDS = 900
 """How long a simulation may live; it is ended before."""
-PATIENCE = 40.0
+PATIENCE = 90.0
 PROGRAMS = {"kilted": "gates_rclpy.py", "jazzy": "gates_rclpy.py", "cyclone": "gates_cyclone.py"}
 
 
@@ -98,7 +98,7 @@ def gates(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Gates]:
 @pytest.fixture
 def alone(gates: Gates) -> Iterator[Gates]:
     """The node, and nobody else: whom a test starts ends with it."""
-    gates.wait("nobody is there", lambda said: said["alive"] == 0, 60)
+    gates.wait("nobody is there", lambda said: said["alive"] == 0, 90)
     yield gates
     for program in gates.peers:
         if program.process.poll() is None:
