@@ -3,7 +3,7 @@ PYTHON := .venv/bin/python
 
 .PHONY: demo test quick formal lint format types docs bench fuzz peers venv clean
 
-demo: venv ## the whole path in one terminal, about 20 seconds
+demo: venv ## the whole path in one terminal, in about two minutes
 	$(PYTHON) -m roslet demo
 
 test: ## lint, types, layers, every test on CPython and MicroPython, real peers

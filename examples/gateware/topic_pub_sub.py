@@ -74,7 +74,7 @@ class Design(wiring.Component):
             and name != "ros2_sub_app_data_rep_id"
         }
         m.submodules.user = Instance(
-            "topic_pub_sub",
+            "topic_pub_sub_user",
             p_PERIOD=self._period,
             p_MAX=node.config.ros2_max_app_data_len,
             i_clk=self.clk,

@@ -8,7 +8,7 @@
 
 `default_nettype none
 
-module topic_pub_sub #(
+module topic_pub_sub_user #(
   parameter PERIOD = 100000000,
   parameter MAX = 64 // ROS2_MAX_APP_DATA_LEN
 ) (

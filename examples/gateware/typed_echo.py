@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import pathlib
 
-from amaranth.hdl import Module
+from amaranth.hdl import ClockDomain, ClockSignal, Module
 from amaranth.lib import wiring
-from amaranth.lib.wiring import connect
+from amaranth.lib.cdc import ResetSynchronizer
+from amaranth.lib.wiring import Out, connect
 
 import roslet
 from roslet.gateware.tops.ros_node import Publish, RosNode, Subscribe
@@ -22,7 +23,7 @@ ADDRESS = "192.168.1.100/24"
 
 
 class Design(wiring.Component):
-    """The node at the pins of an FPGA: `clk` with `clk_hz`, and the PHY's."""
+    """The node at the pins of an FPGA: `clk` with `clk_hz`, the PHY's, and `led`, which counts what was echoed."""
 
     def __init__(self, clk_hz: int = 100_000_000, phy: str = "mii", counters: bool = False) -> None:
         roslet.load(TYPES)
@@ -36,11 +37,17 @@ class Design(wiring.Component):
         )
         self.reasons = self._node.reasons
         members = self._node.signature.members
-        super().__init__({name: member for name, member in members.items() if name not in ("ping", "pong")})
+        self._pins = [name for name in members if name not in ("ping", "pong")]
+        super().__init__({**{name: members[name] for name in self._pins}, "led": Out(4)})
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
+        m.domains.sync = ClockDomain()
+        m.d.comb += ClockSignal("sync").eq(self.clk)
+        m.submodules.reset = ResetSynchronizer(~self.rst_n, domain="sync")
         m.submodules.node = node = self._node
-        expose(m, node, self, self.signature.members)
+        expose(m, node, self, self._pins)
         connect(m, node.ping, node.pong)
+        with m.If(node.ping.valid & node.ping.ready):
+            m.d.sync += self.led.eq(self.led + 1)
         return m

@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from roslet.cli.demo import floor
+from roslet.cli.demo import floor, gates
 from roslet.cli.demo.programs import Programs, cyclone_python, folder
 from roslet.cli.demo.show import HEIGHT, ROS1, ROS2, WIDTH, judge, png_size
 
@@ -143,10 +143,10 @@ def test_the_floor_is_timed_with_a_process_of_its_own() -> None:
 
 
 def test_the_whole_demo_works_and_leaves_nothing_behind(start: Start, tmp_path: pathlib.Path) -> None:
-    process = start("demo", "--seconds", 1, "--rate", 50, "--folder", tmp_path, "--json")
+    process = start("demo", "--seconds", 1, "--rate", 50, "--folder", tmp_path, "--json", "--no-gates")
     out, err = process.communicate(timeout=40)
     result = json.loads(out)
-    assert (process.returncode, err, result["problems"]) == (0, "", [])
+    assert (process.returncode, err, result["problems"], result["gates"]) == (0, "", [], None)
     rows = {(row["network"], row["topic"]): (row["sent"], row["received"]) for row in result["topics"]}
     assert rows.pop((ROS1, "/image")) == (10, 10)
     assert set(rows.values()) == {(50, 50)}
@@ -156,6 +156,46 @@ def test_the_whole_demo_works_and_leaves_nothing_behind(start: Start, tmp_path: 
     assert 0 < result["discovery"] < 5
     assert png_size(pathlib.Path(result["picture"]).read_bytes()) == (WIDTH, HEIGHT)
     assert children(process.pid) == []
+
+
+@pytest.mark.timeout(400)  # the design is compiled
+def test_the_node_in_gates_and_the_one_in_software_hear_each_other() -> None:
+    said: list[str] = []
+    found = gates.simulate(said.append)
+    assert gates.judge(found) == []
+    assert found["heard"][:3] == [f"Message from FPGA - {number:04}" for number in range(3)]
+    assert found["sent"][:5] == ["", "a", "short", "ten octets", "fifteen octets!"]
+    assert found["leds"][:4] == [1, 3, 7, 15]
+    assert found["faults"] == {}
+    assert any(line.endswith("LEDs ***.") for line in said)
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [
+        (
+            {"heard": ["Message from FPGA - 0001", "Message from FPGA - 0003"]},
+            "not one number after the other",
+        ),
+        ({"heard": []}, "not one number after the other"),
+        ({"heard": ["Message from FPGA - 1"]}, "not one number after the other"),
+        ({"leds": [1, 7]}, "the LEDs showed"),
+        ({"leds": []}, "the LEDs showed"),
+        ({"faults": {"fcs-wrong": 1}}, "faults in frames"),
+        ({"problems": ["gates: exit code 1: no"]}, "exit code 1"),
+    ],
+)
+def test_what_is_wrong_with_the_gates_is_told(change: dict[str, Any], problem: str) -> None:
+    right: dict[str, Any] = {
+        "heard": ["Message from FPGA - 0007", "Message from FPGA - 0008"],
+        "sent": ["", "a", "short"],
+        "leds": [1, 3],
+        "faults": {},
+        "problems": [],
+    }
+    assert gates.judge(right) == []
+    (told,) = gates.judge({**right, **change})
+    assert problem in told
 
 
 def children(pid: int) -> list[int]:

@@ -48,15 +48,17 @@ def test_verilog_comes_with_the_headers_of_the_manual(run: Run, tmp_path: pathli
     assert "`define ROS2CLK_HZ" in (tmp_path / "out" / "ros2_config.vh").read_text()
 
 
-def test_a_board_gets_a_project_of_the_example(run: Run, tmp_path: pathlib.Path) -> None:
-    outcome = run("gateware", "build", "udp-tx-rx", "--target", "arty-a7", "--output", tmp_path)
+@pytest.mark.parametrize("example", ["imu-node", "topic-pub-sub", "typed-echo", "udp-tx-rx"])
+def test_a_board_gets_a_project_of_the_example(run: Run, tmp_path: pathlib.Path, example: str) -> None:
+    outcome = run("gateware", "build", example, "--target", "arty-a7", "--output", tmp_path)
     assert outcome.code == 0, outcome.err
-    names = ["udp_tx_rx.v", "arty_a7.v", "arty_a7.xdc", "arty_a7.tcl"]
+    verilog = f"{example.replace('-', '_')}.v"
+    names = [verilog, "arty_a7.v", "arty_a7.xdc", "arty_a7.tcl"]
     assert outcome.out.splitlines() == [str(tmp_path / name) for name in names]
     assert "NOT RUN" in (tmp_path / "arty_a7.tcl").read_text()
     if shutil.which("iverilog") is None:
         pytest.skip("no Icarus Verilog: tools/debian.sh installs it")
-    sources = [tmp_path / "udp_tx_rx.v", tmp_path / "arty_a7.v"]
+    sources = [tmp_path / verilog, tmp_path / "arty_a7.v"]
     subprocess.run(["iverilog", "-t", "null", "-s", "arty_a7", *sources], check=True, timeout=60)
 
 

@@ -1,22 +1,25 @@
-"""A software participant on a simulated wire, and what `roslet gateware sim topic-pub-sub` has it do."""
+"""A software participant on a simulated wire, and what `roslet gateware sim` has it do with each example that is a ROS 2
+node."""
 
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from roslet.cli.gateware_sim import HOST, HOST_MAC, PREFIX, Session
 from roslet.engine.net.host import Host
 from roslet.engine.rtps import events
 from roslet.engine.rtps.participant import Participant
+from roslet.gen.runtime import message_class
+from roslet.names.ros2 import TOPIC, dds_topic, dds_type
 from roslet.sim.wire import HostStation, Station
 from roslet.wire.rtps import guid, locator, qos
 from roslet.wire.rtps.qos import Qos
 
 if TYPE_CHECKING:
     from roslet.sim.link import Link
+    from roslet.wire.message import Message
 
-PUBLISHED, SUBSCRIBED, TYPE = "rt/bbb", "rt/aaa", "std_msgs::msg::dds_::String_"
 QOS = Qos((qos.RELIABLE, qos.DEFAULT_BLOCKING), history=(qos.KEEP_LAST, 10))  # as rclpy has it
 DOMAIN, NUMBER = 0, 0
 
@@ -53,16 +56,24 @@ class ParticipantStation(Station):
 
 
 class RosSession(Session):
-    """The node has a software participant for company, which prints what it publishes on /bbb, and publishes on /aaa."""
+    """The node has a software participant for company, which tells what the node publishes, and publishes itself."""
+
+    PUBLISHED: ClassVar[tuple[str, str]]
+    """The node's topic, and its type."""
+    SUBSCRIBED: ClassVar[tuple[str, str]]
 
     def _add_host(self) -> None:
-        self.counts = {"messages": 0, "frames": 0}
+        self.counts = {"sent": 0, "received": 0, "frames": 0}
         station = ParticipantStation(self.wire.hub.port())
         self.wire.add(station)
         self._participant = station.participant
-        self._participant.create_reader(PUBLISHED, TYPE, QOS, self.wire.now)
-        self._writer: Any = self._participant.create_writer(SUBSCRIBED, TYPE, QOS, self.wire.now)
-        self._texts = itertools.cycle(("", "a", "short", "ten octets", "fifteen octets!"))
+        self._heard, self._said = (
+            message_class("ros2", kind) for _, kind in (self.PUBLISHED, self.SUBSCRIBED)
+        )
+        for endpoint, (topic, kind) in (("reader", self.PUBLISHED), ("writer", self.SUBSCRIBED)):
+            create = getattr(self._participant, f"create_{endpoint}")
+            made: Any = create(dds_topic(TOPIC, topic), dds_type(kind), QOS, self.wire.now)
+        self._writer = made
         self._matched = False
 
     def _hear(self) -> None:
@@ -74,23 +85,101 @@ class RosSession(Session):
                     f"found a participant, {event.data.guid[:12].hex('.')}", found=event.data.guid.hex()
                 )
             elif isinstance(event, events.EndpointMatched):
-                self._matched = True
+                self._matched |= event.data.topic == dds_topic(TOPIC, self.SUBSCRIBED[0])
                 self._tell(
                     f"{event.data.topic[2:]} matches, of type {event.data.type_name}",
                     matched=event.data.topic,
                 )
             elif isinstance(event, events.SampleReceived):
-                payload = bytes(event.payload)
-                text = payload[8 : 8 + int.from_bytes(payload[4:8], "little") - 1].decode("utf-8", "replace")
-                self.counts["messages"] += 1
-                self._tell(f"/bbb  {text!r}", received=text)
+                self.counts["received"] += 1
+                self._show(self._heard.deserialize(event.payload))
 
     def _ask(self) -> None:
         if self._tap or not self._matched:
             return
+        message = self._next()
+        self._writer.write(message.serialize(), self.wire.now)
+        self.counts["sent"] += 1
+
+    def _show(self, message: Any) -> None:
+        """Tell of a message that the node published."""
+        raise NotImplementedError
+
+    def _next(self) -> Message:
+        """What is published now, of which this tells."""
+        raise NotImplementedError
+
+
+class TextSession(RosSession):
+    """Texts both ways."""
+
+    PUBLISHED = ("/bbb", "std_msgs/msg/String")
+    SUBSCRIBED = ("/aaa", "std_msgs/msg/String")
+    _texts = itertools.cycle(("", "a", "short", "ten octets", "fifteen octets!"))
+
+    def _show(self, message: Any) -> None:
+        self._tell(f"/bbb  {message.data!r}", received=message.data)
+
+    def _next(self) -> Message:
         text = next(self._texts)
-        octets = text.encode() + b"\0"
-        padding = -len(octets) % 4
-        payload = bytes((0, 1, 0, padding)) + len(octets).to_bytes(4, "little") + octets + bytes(padding)
-        self._writer.write(payload, self.wire.now)
         self._tell(f"/aaa  {text!r} published", sent=text)
+        return self._said(data=text)  # type: ignore[call-arg]
+
+
+class EchoSession(RosSession):
+    """Coordinates, each of which comes back, and how long that took."""
+
+    PUBLISHED = ("/pong", "mros_comm_measure/msg/Coordinate")
+    SUBSCRIBED = ("/ping", "mros_comm_measure/msg/Coordinate")
+
+    def _add_host(self) -> None:
+        super()._add_host()
+        self.counts["altered"] = 0
+        self._pending: dict[float, tuple[Message, float]] = {}
+
+    def _show(self, message: Any) -> None:
+        sent, since = self._pending.pop(message.x, (None, self.wire.now))
+        self.counts["altered"] += sent != message
+        own = (self.wire.now - since) / self.wire.factor
+        self._tell(
+            f"/pong  {message.x:g} {message.y:g} {message.z:g}, after {own * 1e6:.1f} us of the design's time",
+            received=[message.x, message.y, message.z],
+            seconds=own,
+        )
+
+    def _next(self) -> Message:
+        number = float(self.counts["sent"] + 1)
+        message = self._said(x=number, y=number / 4, z=-number)  # type: ignore[call-arg]
+        self._pending[number] = (message, self.wire.now)
+        self._tell(
+            f"/ping  {number:g} {number / 4:g} {-number:g} published", sent=[number, number / 4, -number]
+        )
+        return message
+
+
+class ImuSession(RosSession):
+    """Measurements of a sensor that counts, and a velocity that is zero every other time."""
+
+    RATE = 1000.0
+    PUBLISHED = ("/imu", "sensor_msgs/msg/Imu")
+    SUBSCRIBED = ("/cmd_vel", "geometry_msgs/msg/Twist")
+
+    def _show(self, message: Any) -> None:
+        turn, force = message.angular_velocity.z, message.linear_acceleration.z
+        self._tell(
+            f"/imu  {message.header.frame_id}  turns at {turn:.9f} rad/s, accelerates by {force:.9f} m/s2",
+            received=[message.header.frame_id, turn, force],
+        )
+
+    def _next(self) -> Message:
+        message: Any = self._said()
+        message.linear.x = 0.5 * (self.counts["sent"] % 2 == 0)
+        self._tell(f"/cmd_vel  {message.linear.x:g} m/s published", sent=message.linear.x)
+        return message  # type: ignore[no-any-return]
+
+
+SESSIONS: dict[str, type[RosSession]] = {
+    "topic-pub-sub": TextSession,
+    "typed-echo": EchoSession,
+    "imu-node": ImuSession,
+}

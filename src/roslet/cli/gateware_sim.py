@@ -7,7 +7,7 @@ import pathlib
 import runpy
 import subprocess
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from roslet.cli.demo.programs import folder
 from roslet.cli.options import OK, CommandError, Group, positive
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from roslet.sim.model import Model
     from roslet.sim.wire import GatewareStation, Wire
 
-EXAMPLES = {"udp-tx-rx": "udp_tx_rx.py", "topic-pub-sub": "topic_pub_sub.py"}
+EXAMPLES = {
+    name: f"{name.replace('-', '_')}.py" for name in ("imu-node", "topic-pub-sub", "typed-echo", "udp-tx-rx")
+}
 # The design's clock, in its own time: as slow as 100 Mbit/s allows without a pause.
 CLOCK, PHY_CLOCK = 50e6, 25e6
 # Seconds of the wire in a second of the design: so 200,000 cycles a second, which one processor simulates in real time.
@@ -40,6 +42,7 @@ def add(group: Group) -> None:
         "simulate a gateware example at the pins of its PHY",
         "roslet gateware sim udp-tx-rx\n"
         "roslet gateware sim topic-pub-sub\n"
+        "roslet gateware sim typed-echo --json\n"
         "roslet gateware sim udp-tx-rx --seconds 20 --pcap wire.pcap --loss 0.1\n"
         "roslet gateware sim udp-tx-rx --tap tap0   # as root; then: ping 192.168.1.100",
         "json",
@@ -49,7 +52,7 @@ def add(group: Group) -> None:
         f"first time. On the wire with it is a software host, {HOST}, which pings it and sends it datagrams, or is a ROS 2 "
         "node and exchanges messages with it; or, with --tap, the Linux kernel, and whatever ROS 2 runs there."
     )
-    sim.add_argument("example", choices=sorted(EXAMPLES), metavar="EXAMPLE", help=", ".join(sorted(EXAMPLES)))
+    sim.add_argument("example", choices=EXAMPLES, metavar="EXAMPLE", help=", ".join(EXAMPLES))
     sim.add_argument(
         "--seconds", type=positive, default=5.0, help="how long, in seconds of the wire (default 5)"
     )
@@ -78,11 +81,13 @@ def run(arguments: argparse.Namespace) -> int:
         design = runpy.run_path(str(folder() / "gateware" / EXAMPLES[arguments.example]))["Design"]
     except ModuleNotFoundError as error:
         raise CommandError(f"{error.name} is not installed: pip install 'roslet[gateware]'") from None
-    top = design(round(CLOCK / arguments.factor), counters=True)
+    kind = _session(arguments.example)
+    rate = {} if kind.RATE is None else {"rate": kind.RATE / arguments.factor}
+    top = design(round(CLOCK / arguments.factor), counters=True, **rate)
     if not arguments.json:
         note("compiling the design, unless that was done before")
     with Model(top) as model:
-        session = _session(arguments.example)(arguments, model, top.reasons)
+        session = kind(arguments, model, top.reasons)
         try:
             session.run(arguments.seconds)
         except KeyboardInterrupt:
@@ -94,11 +99,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _session(example: str) -> type[Session]:
-    if example == "topic-pub-sub":
-        from roslet.cli.gateware_ros import RosSession
+    if example == "udp-tx-rx":
+        return Session
+    from roslet.cli.gateware_ros import SESSIONS
 
-        return RosSession
-    return Session
+    return SESSIONS[example]
 
 
 def dropped(model: Model, reasons: dict[str, int]) -> dict[str, int]:
@@ -116,6 +121,10 @@ def dropped(model: Model, reasons: dict[str, int]) -> dict[str, int]:
 
 class Session:
     """A design on its wire, and what is told of it."""
+
+    RATE: ClassVar[float | None] = None
+    """Messages that the example publishes in a second of its own time, where that is more than the wire would carry in one
+    of its seconds."""
 
     def __init__(self, arguments: argparse.Namespace, model: Model, reasons: dict[str, int]) -> None:
         from roslet.sim.link import Faults

@@ -165,9 +165,11 @@ class Wire:
         self.add(station)
         return station
 
-    def gateware(self, model: Model, mii: Mii, link: Link | None = None) -> GatewareStation:
-        """A design, likewise. Its clocks must have been started."""
-        station = GatewareStation(model, mii, link or self.hub.port(), self.factor)
+    def gateware(
+        self, model: Model, mii: Mii, link: Link | None = None, kind: type[GatewareStation] | None = None
+    ) -> GatewareStation:
+        """A design, likewise, as a station of `kind`. Its clocks must have been started."""
+        station = (kind or GatewareStation)(model, mii, link or self.hub.port(), self.factor)
         station.start(self.now)
         self.add(station)
         self._gates = True

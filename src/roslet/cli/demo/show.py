@@ -11,7 +11,7 @@ import zlib
 from struct import unpack_from
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.demo import floor
+from roslet.cli.demo import floor, gates
 from roslet.cli.demo.programs import Program, Programs, cyclone_python
 from roslet.cli.output import Live, emit_json, seconds_text, table
 
@@ -41,6 +41,8 @@ def demonstrate(arguments: argparse.Namespace) -> int:
     demo.ros1()
     demo.ros2()
     demo.time_floors()
+    if not arguments.no_gates:
+        demo.gates()
     result = demo.result()
     if arguments.json:
         emit_json(result)
@@ -61,6 +63,7 @@ class _Demo:
         self.floors: dict[str, list[float]] = {ROS1: [], ROS2: []}
         self.figures: dict[str, dict[str, dict[str, Any]]] = {ROS1: {}, ROS2: {}}
         self.problems: list[str] = []
+        self.simulated: dict[str, Any] | None = None
 
     def say(self, text: str) -> None:
         if not self.quiet:
@@ -127,6 +130,15 @@ class _Demo:
                 self.say(f"{CYCLONE} is not installed: no third party listens")
             self._watch(ROS2, cast, programs)
 
+    def gates(self) -> None:
+        """A node in gates, and one in software, on a simulated wire."""
+        missing = gates.missing()
+        if missing is not None:
+            self.say(f"\n{missing} is not installed: no node in gates takes part")
+            return
+        self.simulated = gates.simulate(self.say)
+        self.problems += gates.judge(self.simulated)
+
     def _watch(self, network: str, cast: dict[str, Program], programs: Programs) -> None:
         """Show what the programs report, once a second, until they have ended or should have."""
         live = Live()
@@ -158,6 +170,7 @@ class _Demo:
     def result(self) -> dict[str, Any]:
         """The summary, and under `problems` what was wrong or missing."""
         result = judge(self.figures, self.floors, self.folder / "image.png")
+        result["gates"] = self.simulated
         result["problems"] = self.problems + result["problems"]
         return result
 
@@ -319,6 +332,12 @@ def _print(result: dict[str, Any]) -> None:
     )
     if not result["cyclonedds"]:
         print(f"{CYCLONE} is not installed and took no part")
+    if result["gates"]:
+        found = result["gates"]
+        print(
+            f"gates: {len(found['heard'])} messages from them, {len(found['sent'])} to them, "
+            f"{found.get('cycles', 0):,} cycles, {found.get('cycles a second', 0):,} a second"
+        )
     print(f"picture: {result['picture']}")
     print()
     for problem in result["problems"]:
