@@ -139,7 +139,8 @@ class Parameters(wiring.Component):
         came, ended = Signal(), Signal()
         m.d.comb += [came.eq(i.valid & ~i.payload.end), ended.eq(i.valid & i.payload.end)]
         little = Signal()
-        number = Mux(little, word, exchanged(word))
+        number = Signal(32)  # the word as one, in the cycle after
+        m.d.sync += number.eq(Mux(little, word, exchanged(word)))
         is_participant = meta.kind == ports.PARTICIPANTS
 
         what = Signal(_What)
@@ -196,7 +197,7 @@ class Parameters(wiring.Component):
                     m.next = "MALFORMED"
                 with m.Elif(came):
                     last = Signal()  # cycle of this word
-                    m.d.comb += [last.eq(1), i.ready.eq(last)]
+                    m.d.comb += [last.eq(step == 1), i.ready.eq(last)]
                     m.d.sync += step.eq(step + 1)
                     with m.If(last):
                         m.d.sync += [left.eq(left - 1), at.eq(at + ~at.all()), step.eq(0)]
@@ -238,7 +239,7 @@ class Parameters(wiring.Component):
             m.d.comb += [self.write.en.eq(1), self.write.addr.eq(target), self.write.data.eq(value)]
 
         def refuse(condition: Value) -> None:
-            with m.If(condition):
+            with m.If(condition & (step != 0)):
                 m.d.sync += read.refused.eq(1)
 
         first, second = at == 0, at == 1
@@ -313,7 +314,7 @@ class Parameters(wiring.Component):
         near = self._near[ip == tables.USER_IP]
         with m.If(at == 0):
             m.d.sync += usable.eq(number == locator.LOCATOR_KIND_UDPv4)
-        with m.Elif(at == 1):
+        with m.Elif((at == 1) & (step != 0)):
             m.d.sync += [port.eq(number), usable.eq(usable & (number[:16] != 0) & (number[16:] == 0))]
         with m.Elif(at == 5):
             wanted = usable & (word[:8] != 0) & (word[:8] != LOOPBACK) & (~flag | (is_near & ~near))
@@ -339,10 +340,10 @@ class Parameters(wiring.Component):
     ) -> None:
         """A text: compared, a word at a time, with that of each of our endpoints of the other kind."""
         first = at == 0
-        m.d.comb += masked.eq(Mux(first, number, word))
+        m.d.sync += masked.eq(Mux(first, number, word))  # which is looked at later: the word stays
         for n in range(4):
             with m.If(~first & (text_left <= n)):
-                m.d.comb += masked.word_select(n, 8).eq(0)
+                m.d.sync += masked.word_select(n, 8).eq(0)
         reader = self.i.meta.kind == ports.PUBLICATIONS
         m.d.comb += [
             self.own.addr.eq(self._own.text(reader, Const(is_type, 1), step, at)),
