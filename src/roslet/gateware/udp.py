@@ -175,7 +175,8 @@ class UdpTx(wiring.Component):
         m = Module()
         i, o = self.i.stream, self.o.stream
         meta = self.i.meta
-        length = Cat(meta.length[:3], meta.length[3:] + 1)  # and udp.SIZE, 8
+        length = Signal(16)  # from the second cycle of SUM on
+        m.d.sync += length.eq(Cat(meta.length[:3], meta.length[3:] + 1))  # and udp.SIZE, 8
         numbers = {**{name: meta[name] for name in ("source_port", "destination_port")}, "length": length}
         words = [(word[8:16], word[:8]) for word in (meta.sum, *(numbers[field.name] for field in _NUMBERS))]
         octets = Cat(self.addresses.ip, meta.destination, *(octet for word in words for octet in word))

@@ -14,7 +14,8 @@ SUBJECT = data.StructLayout(
     {"builtin": 1, "kind": 2, "slot": 8, "endpoint": 8, "entity": 8, "sample": 32, "words": 16}
 )
 """Whom and what it is about: the participant; the proxy, builtin or the user's; the number of our endpoint as its entity id
-has it; where the message begins in our own memory, and how many words it has."""
+has it; where the message begins in our own memory, its words behind its length, in bits that are zero here, and how many
+they are."""
 
 
 class Composer(wiring.Component):
@@ -116,7 +117,7 @@ class Composer(wiring.Component):
                 with m.Case(Op.LENGTH.value):
                     m.d.sync += literals[0][16:].eq(argument[16:32] + Cat(C(0, 2), subject.words[:14]))
                 with m.Case(Op.MESSAGE.value):
-                    m.d.comb += [self.own.addr.eq(subject.sample + 1 + word), pushes.eq(in_message)]
+                    m.d.comb += [self.own.addr.eq(subject.sample | (word + 1)), pushes.eq(in_message)]
                     m.d.sync += [sources[0].eq(from_own), word.eq(word + 1)]
                 with m.Case(Op.END.value):
                     m.d.comb += [pushes.eq(0), ends.eq(1)]

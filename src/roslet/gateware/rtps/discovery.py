@@ -16,6 +16,14 @@ from roslet.gateware.words import MessageSignature
 from roslet.wire.rtps.qos import TRANSIENT_LOCAL, VOLATILE
 
 
+class _Room:
+    """Of bits, a cycle after they have changed: `full`, none is low; `free`, which is the lowest one that is."""
+
+    def __init__(self, m: Module, taken: Value) -> None:
+        self.full, self.free = Signal(), Signal(range(len(taken)))
+        m.d.sync += [self.full.eq(taken.all()), self.free.eq(lowest(~taken))]
+
+
 class Discovery(wiring.Component):
     """The table of participants, and that of their endpoints that match ours.
 
@@ -86,6 +94,8 @@ class Discovery(wiring.Component):
         with m.If(self.greet):
             m.d.sync += arrived.eq(1)
         m.d.sync += [addressed.eq(step), before.eq(addressed)]
+        # Where somebody new may go; neither changes while a list is dealt with, until it has been looked at
+        self._slots, self._places = _Room(m, self.alive), _Room(m, self.matched)
         with m.If(self.tick):
             m.d.sync += ticked.eq(1)
         with m.If(self.heard):
@@ -213,14 +223,14 @@ class Discovery(wiring.Component):
                 m.d.comb += self.drop_refused.eq(1)
             with m.Elif(~read.guid | ~read.meta):
                 m.d.comb += self.drop_incomplete.eq(1)
-            with m.Elif(~meta.known & self.alive.all()):
+            with m.Elif(~meta.known & self._slots.full):
                 m.d.comb += self.drop_full.eq(1)
             with m.Elif(~meta.known & arrived):
                 pass  # most likely it says so twice
             with m.Else():
                 m.next = "COPY"
                 with m.If(~meta.known):
-                    m.d.sync += slot.eq(lowest(~self.alive))
+                    m.d.sync += slot.eq(self._slots.free)
         with m.State("COPY"):  # the scratch area, behind what is read
             source = Signal(4)
             m.d.comb += source.eq(step)
@@ -325,12 +335,12 @@ class Discovery(wiring.Component):
                 m.d.comb += self.drop_qos.eq(1)
                 with m.If(found):
                     m.d.sync += self.matched.bit_select(endpoint, 1).eq(0)
-            with m.Elif(~found & self.matched.all()):
+            with m.Elif(~found & self._places.full):
                 m.d.comb += self.drop_full.eq(1)
             with m.Else():
                 m.next = "PROXY"
                 with m.If(~found):
-                    m.d.sync += endpoint.eq(lowest(~self.matched))
+                    m.d.sync += endpoint.eq(self._places.free)
         with m.State("PROXY"):  # behind what is read
             last = self.own.data
             m.d.comb += self._own_address.eq(own.writer(local, tables.WRITER_LAST))

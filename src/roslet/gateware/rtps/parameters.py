@@ -247,12 +247,12 @@ class Parameters(wiring.Component):
             with m.Case(_What.GUID):
                 m.d.comb += self.peers.addr.eq(self._peers.scratch((tables.SCRATCH_SOURCE + at)[:4]))
                 m.d.comb += last.eq(step == READ_LATENCY)
-                with m.If(at < tables.META_IP):
+                with m.If(at == 3):
+                    m.d.sync += [read.entity.eq(word), read.guid.eq(1)]
+                with m.Elif(at[2:] == 0):
                     keep(self._peers.scratch(at), word)
                     with m.If(last & (self.peers.data != word)):
                         m.next = "MALFORMED"
-                with m.Elif(at == 3):
-                    m.d.sync += [read.entity.eq(word), read.guid.eq(1)]
             with m.Case(_What.LEASE), m.If(first):
                 m.d.sync += read.lease.eq(Mux(number[16:].any(), MAX_LEASE, number[:16]))
             for kind, flag, ip in (
@@ -267,7 +267,7 @@ class Parameters(wiring.Component):
                 if self._judge_domain:
                     refuse(first & (number != self.domain))
             with m.Case(_What.TAG):
-                refuse(first & (number > 1))  # a text with more than its NUL
+                refuse(first & (number[1:] != 0))  # a text with more than its NUL
             for kind, flag, is_type in ((_What.TOPIC, read.topic, 0), (_What.TYPE, read.type, 1)):
                 with m.Case(kind):
                     self._text(m, at, step, word, number, left, last, text_left, masked, flag, is_type)
@@ -342,7 +342,7 @@ class Parameters(wiring.Component):
         first = at == 0
         m.d.sync += masked.eq(Mux(first, number, word))  # which is looked at later: the word stays
         for n in range(4):
-            with m.If(~first & (text_left <= n)):
+            with m.If(~first & (text_left[2:] == 0) & (text_left[:2] <= n)):
                 m.d.sync += masked.word_select(n, 8).eq(0)
         reader = self.i.meta.kind == ports.PUBLICATIONS
         m.d.comb += [
@@ -357,7 +357,7 @@ class Parameters(wiring.Component):
                 with m.If((shown == n) & (self.own.data != masked)):
                     m.d.sync += self.same[n].eq(0)
         with m.If(last):
-            m.d.sync += text_left.eq(Mux(text_left[2:] != 0, text_left - 4, 0))
+            m.d.sync += text_left.eq(Mux(text_left[2:] != 0, Cat(text_left[:2], text_left[2:] - 1), 0))
             with m.If(first):
                 m.d.sync += [text_left.eq(number), flag.eq(number[16:] == 0)]
                 with m.If((number == 0) | (number[16:] != 0) | (((number[:16] + 3) >> 2) >= left)):

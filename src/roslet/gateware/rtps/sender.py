@@ -190,13 +190,7 @@ class Sender(wiring.Component):
 
     def _sample(self, number: Value) -> Value:
         """Where our writer keeps the message with this number."""
-        own = self._own
-        places = [
-            C(base, own.address_bits)
-            + (number[: one.depth.bit_length() - 1] << (own.stride(one).bit_length() - 1))
-            for base, one in zip(own.samples, own.writers, strict=True)
-        ]
-        return self._choose(places)
+        return self._choose([self._own.sample(n, number) for n in range(len(self._own.writers))])
 
     # -- whose turn it is
 
@@ -342,7 +336,7 @@ class Sender(wiring.Component):
         """A peer's reader: what we have, and what it has and asks for."""
         own, subject = self._own, self.subject
         ask_to = Signal(AGE)
-        start, unacknowledged = Signal(AGE), Signal()
+        start, unacknowledged, lost = Signal(AGE), Signal(), Signal()
         kinds = len(own.writers) - 1, len(own.readers) - 1  # ages of the oldest that discovery has to say
         with m.State("READER"):
             m.d.sync += self.ip.eq(self.peers.data)
@@ -391,13 +385,15 @@ class Sender(wiring.Component):
             m.next = "JUDGE"
         with m.State("JUDGE"):
             m.next = "IDLE"
+            m.d.sync += lost.eq((self._age > self._oldest) & (self._age < start) & (self._age >= ask_to))
             with m.If(self._asked):
-                m.next = "RESEND"
-                lost = (self._age > self._oldest) & (self._age < start) & (self._age >= ask_to)
-                with m.If(lost & ~subject.builtin):
-                    self._compose(m, self._rom.start["gap"], "RESEND")
+                m.next = "LOST"
             with m.Elif(unacknowledged):
                 m.next = "HEARTBEAT"
+        with m.State("LOST"):
+            m.next = "RESEND"
+            with m.If(lost & ~subject.builtin):
+                self._compose(m, self._rom.start["gap"], "RESEND")
         with m.State("RESEND"):
             with m.If(self._age > self._oldest):
                 m.d.sync += self._age.eq(self._oldest)
@@ -462,7 +458,7 @@ class Sender(wiring.Component):
             item.eq(Array(Value.cast(one.payload) for one in streams)[self._local]),
             valid.eq(Array(one.valid for one in streams)[self._local]),
         ]
-        words, long = Signal(16), Signal()
+        words, long = subject.words, Signal()
         step = Signal(range(peers.endpoints + READ_LATENCY + 1))
         addressed, shown = Signal(range(peers.endpoints)), Signal(range(peers.endpoints))
         reads = Signal(range(READ_LATENCY + 1))  # under way
@@ -496,9 +492,9 @@ class Sender(wiring.Component):
                     m.d.sync += long.eq(1)
                 with m.Else():
                     m.d.sync += words.eq(words + 1)
-                    self._write(m, subject.sample + 1 + words, item.data)
+                    self._write(m, subject.sample | (words + 1), item.data)
             with m.If(valid & item.end):
-                m.d.sync += [self._padding.eq(item.padding), subject.words.eq(words)]
+                m.d.sync += self._padding.eq(item.padding)
                 m.next = "SIZE"
                 with m.If(item.bad | long):
                     for n in range(self._users):
