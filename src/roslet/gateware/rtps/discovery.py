@@ -347,7 +347,8 @@ class Discovery(wiring.Component):
             where = Mux(step[0], tables.USER_PORT, tables.USER_IP)  # for IP, 2, and PORT, 3
             m.d.comb += self._address.eq(Mux(read.user, peers.scratch(where), peers.participant(slot, where)))
             # Before all that is kept, where it gets what was before it: numbers are compared by their difference.
-            first = last + Mux(transient, C(-MAX_HISTORY, 32), C(1, 32))
+            first = Signal(32)
+            m.d.sync += first.eq(last + Mux(transient, C(-MAX_HISTORY, 32), C(1, 32)))
             words = [
                 self._entity,
                 Cat(slot, local, C(0, 8 - len(local)), is_writer, reliable),

@@ -13,6 +13,7 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
+from roslet.gateware.compare import below
 from roslet.gateware.meta import ADDRESSES
 from roslet.gateware.rtps import ports, tables
 from roslet.gateware.rtps.ports import DISCOVERY, READ_LATENCY, ReadSignature, WriteSignature, exchanged
@@ -342,7 +343,7 @@ class Parameters(wiring.Component):
         first = at == 0
         m.d.sync += masked.eq(Mux(first, number, word))  # which is looked at later: the word stays
         for n in range(4):
-            with m.If(~first & (text_left[2:] == 0) & (text_left[:2] <= n)):
+            with m.If(~first & below(text_left, n + 1)):
                 m.d.sync += masked.word_select(n, 8).eq(0)
         reader = self.i.meta.kind == ports.PUBLICATIONS
         m.d.comb += [

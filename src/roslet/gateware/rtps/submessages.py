@@ -8,6 +8,7 @@ from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from roslet.gateware.compare import below
 from roslet.gateware.rtps import ports, tables
 from roslet.gateware.rtps.ports import (
     DISCOVERY,
@@ -189,7 +190,7 @@ class Submessages(wiring.Component):
                 with m.If(
                     came
                     & (
-                        (to_qos < TO_INLINE_QOS)
+                        below(to_qos, TO_INLINE_QOS)
                         | (to_qos[:2] != 0)
                         | (both == data_submessage.FLAG_D | data_submessage.FLAG_K)
                     )
@@ -515,7 +516,7 @@ class Submessages(wiring.Component):
             m.d.comb += i.ready.eq(1)
             m.d.sync += skip.eq(number[:9])
             m.next = state
-            with m.If((number[9:] != 0) | (number[8] & (number[:8] != 0))):  # more than MAX_BITS, 256
+            with m.If(~below(number, MAX_BITS + 1)):
                 m.next = "INVALID"
         with m.If(ended):
             m.next = "INVALID"

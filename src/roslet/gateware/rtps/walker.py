@@ -6,6 +6,7 @@ from amaranth.hdl import Cat, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from roslet.gateware.compare import below
 from roslet.gateware.rtps.ports import READ_LATENCY, SUBMESSAGE, ReadSignature, WriteSignature
 from roslet.gateware.rtps.tables import OWN_PREFIX, PREFIX, SCRATCH_SOURCE, OwnMap, PeerMap
 from roslet.gateware.words import MessageSignature
@@ -140,14 +141,14 @@ class Walker(wiring.Component):
                         with m.Case(*FRAGMENTS):
                             m.d.comb += self.drop_fragment.eq(for_us)
             with m.State("DESTINATION"):
-                with m.If((at == 0) & (left < _PREFIX_WORDS) & ~to_end):
+                with m.If((at == 0) & below(left, _PREFIX_WORDS) & ~to_end):
                     m.next = "SKIP"
                 with m.Else():
                     self._compare_own(m, came, at, left, for_us)
                     with m.If(i.valid & i.payload.end):
                         m.next = "SHORT"
             with m.State("SOURCE"):
-                with m.If((at == 0) & (left < _INFO_SRC_WORDS) & ~to_end):
+                with m.If((at == 0) & below(left, _INFO_SRC_WORDS) & ~to_end):
                     m.next = "SKIP"
                 with m.Elif(came):
                     m.d.comb += i.ready.eq(1)
