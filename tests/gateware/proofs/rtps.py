@@ -90,7 +90,7 @@ class QueueSpec(Spec):
         ]
 
 
-SKIPPED = """with m.If((left == 0) & ~to_end):
+SKIPPED = """with m.If(left[-1] & ~to_end):
                     m.next = "{}"
                 with m.Elif(i.valid & i.payload.end):"""
 

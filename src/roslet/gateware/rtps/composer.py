@@ -19,7 +19,7 @@ they are."""
 
 
 class Composer(wiring.Component):
-    """Runs through the template that begins at `at`, from `start`, high for a cycle, on: one word a cycle, from 6 cycles
+    """Runs through the template that begins at `at`, from `start`, high for a cycle, on: one word a cycle, from 7 cycles
     later.
 
     Ports: `subject`, steady until `done`, which is high a cycle or two after the last word; `register`, in the same
@@ -74,6 +74,8 @@ class Composer(wiring.Component):
             read.addr.eq(here),
             read.en.eq(~in_message),
             self.which.eq(argument[:4]),
+        ]
+        m.d.sync += [
             self.push.eq(ready[-1]),
             self.word.eq(
                 Mux(
@@ -83,8 +85,6 @@ class Composer(wiring.Component):
                 )
             ),
             self.done.eq(over[-1]),
-        ]
-        m.d.sync += [
             ready.eq(Cat(pushes, ready[:-1])),
             over.eq(Cat(ends, over[:-1])),
             literals[1].eq(literals[0]),

@@ -214,6 +214,8 @@ class Discovery(wiring.Component):
         peers, meta, read = self._peers, self.i.meta, self._parameters.read
         slot, step, before = self._slot, self._step, self._before
         fresh = Signal()
+        lease = Signal(len(read.lease) + 1)  # with a second more
+        m.d.sync += lease.eq(read.lease + 1)
         with m.State("PARTICIPANT"):
             m.d.sync += [step.eq(0), fresh.eq(~meta.known)]
             m.next = "PROCEED"
@@ -242,7 +244,7 @@ class Discovery(wiring.Component):
                 self._write(
                     m,
                     peers.participant(slot, before),
-                    Mux(before >= tables.LEASE, read.lease + 1, self.peers.data),
+                    Mux(before >= tables.LEASE, lease, self.peers.data),
                 )
             with m.If(step == tables.LEFT + READ_LATENCY):
                 m.d.sync += [

@@ -145,7 +145,8 @@ class Parameters(wiring.Component):
         is_participant = meta.kind == ports.PARTICIPANTS
 
         what = Signal(_What)
-        left, at = Signal(14), Signal(10)  # words of a value: still to come, before
+        # Words of a value: still to come, less one, so that after the last the highest bit is set; and before
+        left, at = Signal(15), Signal(10)
         step = Signal(range(self.locals + READ_LATENCY + 1))  # within a word
         text_left = Signal(16)
         masked = Signal(32)
@@ -174,7 +175,7 @@ class Parameters(wiring.Component):
                 length = Mux(little, word[16:32], Cat(word[24:32], word[16:24]))
                 # What must be understood, and is not.
                 unknown = (pid & pl.FLAG_MUST_UNDERSTAND).any() & ~(pid & pl.FLAG_VENDOR).any()
-                m.d.sync += [what.eq(_What.SKIP), left.eq(length[2:]), at.eq(0), step.eq(0)]
+                m.d.sync += [what.eq(_What.SKIP), left.eq(length[2:] - 1), at.eq(0), step.eq(0)]
                 for here, table in ((is_participant, _OF_PARTICIPANTS), (~is_participant, _OF_ENDPOINTS)):
                     with m.If(here & came), m.Switch(pid):
                         for value, action in table.items():
@@ -192,7 +193,7 @@ class Parameters(wiring.Component):
                 with m.Elif(i.valid):
                     m.next = "MALFORMED"
             with m.State("VALUE"):
-                with m.If(left == 0):
+                with m.If(left[-1]):
                     m.next = "PARAMETER"
                 with m.Elif(ended):
                     m.next = "MALFORMED"
@@ -361,5 +362,5 @@ class Parameters(wiring.Component):
             m.d.sync += text_left.eq(Mux(text_left[2:] != 0, Cat(text_left[:2], text_left[2:] - 1), 0))
             with m.If(first):
                 m.d.sync += [text_left.eq(number), flag.eq(number[16:] == 0)]
-                with m.If((number == 0) | (number[16:] != 0) | (((number[:16] + 3) >> 2) >= left)):
+                with m.If((number == 0) | (number[16:] != 0) | (((number[:16] + 3) >> 2) > left[:-1])):
                     m.next = "MALFORMED"

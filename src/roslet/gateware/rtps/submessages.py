@@ -122,7 +122,7 @@ class Submessages(wiring.Component):
             known.eq((wanted != 0) | (wanted_high != 0)),
         ]
         for_any = Signal()  # reader id unknown
-        reader_number = Signal(8)
+        reader_number = Signal(8)  # from 0 on; in its entity id it is in the third octet, from 1 on
         builtin, builtin_kind, spdp = Signal(), Signal(2), Signal()
         found = Signal()  # a proxy; `endpoint` is the user's
         endpoint = Signal(range(self._peers.endpoints))
@@ -199,7 +199,7 @@ class Submessages(wiring.Component):
             with m.State("READER"):
                 m.d.sync += [
                     for_any.eq(word == 0),
-                    reader_number.eq(word[16:24]),
+                    reader_number.eq(word[16:24] - 1),
                 ]
                 take("WRITER")
                 with m.If(came & (meta.id == submessage.ACKNACK)):
@@ -282,8 +282,7 @@ class Submessages(wiring.Component):
             with m.State("JUDGE"):
                 local = info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8]
                 room = self.room.bit_select(local[: max(1, (self._readers - 1).bit_length())], 1)
-                # Our readers' entity ids have their number, from 1 on, in the third octet.
-                for_us = for_any | (reader_number == local + 1)
+                for_us = for_any | (reader_number == local)
                 m.next = "DROP"
                 with m.If(~legal):
                     m.next = "INVALID"
