@@ -32,7 +32,8 @@ def find_endpoint(
     many = peers.endpoints
     latency = READ_LATENCY + 1  # until it is known whether it is the one
     step = Signal(range(many + latency))
-    addressed, given_of, shown = (Signal(range(many)) for _ in range(3))  # whose word comes next, is there, was there
+    # Whose word the memory gives next, gives now, and gave before
+    addressed, given_of, shown = (Signal(range(many)) for _ in range(3))
     same = Signal()
     reads = Signal(range(latency + 1))  # under way, since the scan began or went on
     m.d.sync += same.eq((given == key) & matched.bit_select(given_of, 1))
