@@ -190,7 +190,7 @@ class Reader(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         for domain in {*self._domains} - {"comb", "sync"}:
-            m.domains[domain] = ClockDomain(domain)
+            m.domains += ClockDomain(domain)
         m.submodules.memory = kept = Memory(shape=8, depth=16, init=[])
         write = kept.write_port(domain=self._domains[0])
         read = kept.read_port(domain=self._domains[1], transparent_for=(write,) if self._transparent else ())
