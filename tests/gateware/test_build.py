@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from amaranth.hdl import ClockDomain, ClockSignal, Module, Signal
 from amaranth.lib import wiring
+from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware import toolchain
@@ -177,6 +178,48 @@ def test_a_small_design_is_placed_and_routed(chip: lattice.Chip, module: str, tm
     assert list(found["clocks"]) == ["clk"]
     assert found["clocks"]["clk"]["goal"] == 12.0
     assert found["met"]
+
+
+class Reader(wiring.Component):
+    """A memory that is written in `w_domain` and read in `r_domain`."""
+
+    def __init__(self, w_domain: str, r_domain: str, transparent: bool = False) -> None:
+        self._domains, self._transparent = (w_domain, r_domain), transparent
+        super().__init__({"addr": In(4), "data": In(8), "read": Out(8)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        for domain in {*self._domains} - {"comb", "sync"}:
+            m.domains += ClockDomain(domain)
+        m.submodules.memory = kept = Memory(shape=8, depth=16, init=[])
+        write = kept.write_port(domain=self._domains[0])
+        read = kept.read_port(domain=self._domains[1], transparent_for=(write,) if self._transparent else ())
+        m.d.comb += [write.addr.eq(~self.addr), write.data.eq(self.data), write.en.eq(1)]
+        m.d.comb += [read.addr.eq(self.addr), self.read.eq(read.data)]
+        return m
+
+
+@pytest.mark.parametrize(
+    ("reader", "anything"),
+    [
+        (Reader("sync", "sync"), True),
+        (Reader("sync", "sync", transparent=True), False),
+        (Reader("sync", "comb"), False),
+        (Reader("sync", "other"), False),
+    ],
+    ids=["plain", "transparent", "asynchronous", "two clocks"],
+)
+def test_only_a_plain_read_may_give_anything_of_what_is_written_with_it(
+    reader: Reader, anything: bool, tmp_path: Path
+) -> None:
+    toolchain.write_rtlil(reader, "kept", tmp_path, free=True)
+    free = (tmp_path / "kept.il").read_text()
+    toolchain.write_rtlil(reader, "promised", tmp_path)
+    promised = (tmp_path / "promised.il").read_text().replace("promised", "kept")
+    assert promised.count("COLLISION_X_MASK 1'0") == 1
+    assert free == (
+        promised.replace("COLLISION_X_MASK 1'0", "COLLISION_X_MASK 1'1") if anything else promised
+    )
 
 
 def test_what_is_too_large_for_a_chip_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

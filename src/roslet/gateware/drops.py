@@ -55,7 +55,7 @@ class DropCounters(wiring.Component):
         )
         looked_at = counts.read_port()
         written = counts.write_port()
-        asked_for = counts.read_port()
+        asked_for = counts.read_port(transparent_for=(written,))
         m.d.comb += [asked_for.addr.eq(self.reason), self.count.eq(asked_for.data)]
 
         waiting = Signal(many)

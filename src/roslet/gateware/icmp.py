@@ -77,19 +77,20 @@ class IcmpEcho(wiring.Component):
         overflows = before[3:].all()
         carry = Signal()
         one = (is_upper & overflows & octet.all()) | (is_lower & carry)
-        m.d.comb += [
+        keep = Signal()
+        m.d.sync += [
+            write.en.eq(keep),
             write.addr.eq(Cat(at, slot)),
             write.data.octet.eq(before + Cat(one, C(0, 2), is_type | is_upper, is_type.replicate(4))),
             write.data.last.eq(end),
-            message_sum.data.eq(octet),
-            i.ready.eq(1),
         ]
+        m.d.comb += [message_sum.data.eq(octet), i.ready.eq(1)]
         too_short, too_long = Signal(), Signal()  # from the second item on
         m.d.sync += [too_short.eq(~meta.length[_SIZE_BITS:].any()), too_long.eq(meta.length > longest)]
         other_type, busy = Signal(), Signal()
         with m.FSM():
             with m.State("REQUEST"), m.If(i.valid):
-                m.d.comb += write.en.eq(1)
+                m.d.comb += keep.eq(1)
                 with m.If(~end):
                     m.d.comb += message_sum.add.eq(1)
                     m.d.sync += [at.eq(at + 1), before.eq(octet), carry.eq(is_upper & overflows)]

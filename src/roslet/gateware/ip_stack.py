@@ -109,7 +109,7 @@ class IpStack(wiring.Component):
         connect(m, blocks["protocol"].o1, blocks["udp"].i)
         if self._has_igmp:
             connect(m, blocks["protocol"].o2, flipped(self.igmp))
-        connect(m, blocks["udp"].o, flipped(self.udp_rx))
+        register(m, "udp_rx", UDP_RX, blocks["udp"].o, flipped(self.udp_rx))
         connect(m, reassembly.ip_payloadsmem, flipped(self.ip_payloadsmem))
         m.d.comb += reassembly.expiration.eq(self.expiration)
 
@@ -120,7 +120,7 @@ class IpStack(wiring.Component):
         for block in (udp, packets):
             m.d.comb += block.addresses.eq(self.addresses)
         connect(m, flipped(self.udp_tx), udp.i)
-        connect(m, udp.o, datagrams.i0)
+        register(m, "udp_tx", IPV4_TX, udp.o, datagrams.i0)
         register(m, "echoes", IPV4_TX, self._blocks["icmp"].o, datagrams.i1)
         connect(m, datagrams.o, packets.i)
         register(m, "packets_tx", ETHERNET_TX, packets.o, flipped(self.tx))

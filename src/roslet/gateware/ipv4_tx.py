@@ -87,12 +87,11 @@ class Ipv4Tx(wiring.Component):
         with m.Elif(passed):
             m.d.sync += position.eq(position + 1)
         if self._cuts:
-            sent = Signal(range(self._piece + 1))  # octets of this packet's payload that are out
-            m.d.comb += boundary.eq(more & (sent == self._piece))
+            sent = Signal(range(self._piece))  # octets of this packet's payload that are out
             with m.If(packet_done):
-                m.d.sync += sent.eq(0)
+                m.d.sync += [sent.eq(0), boundary.eq(0)]
             with m.Elif(passed):
-                m.d.sync += sent.eq(sent + 1)
+                m.d.sync += [sent.eq(sent + 1), boundary.eq(more & (sent == self._piece - 1))]
 
         # -- the header
 

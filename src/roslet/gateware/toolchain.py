@@ -65,8 +65,35 @@ def run(tool: str, arguments: list[str], folder: pathlib.Path) -> None:
         raise ToolFailed(f"{tool} failed, see {log}:\n" + ("\n".join(errors) or said))
 
 
-def write_rtlil(top: Any, name: str, folder: pathlib.Path) -> str:
-    """Write `name`.il, without the places in the source: the same design gives the same text wherever it is.
+_MODULE = re.compile(r"^module .*?^end$", re.DOTALL | re.MULTILINE)
+_READ = re.compile(r"^  cell \$memrd_v2 .*?^  end$", re.DOTALL | re.MULTILINE)
+_CLOCK = re.compile(r"connect \\CLK (.*)")
+
+
+def free_collisions(text: str) -> str:
+    """RTLIL whose memories may give anything of a word that is written at the same edge of the same clock.
+
+    Amaranth promises the old word, unless `transparent_for`. Block RAM does not, between two ports: Yosys would put a
+    register before each write port, and a comparison and a multiplexer behind each read port. Our blocks use no word that
+    they read while it is written, or say `transparent_for`.
+    """
+
+    def read(cell: re.Match[str]) -> str:
+        if "CLK_ENABLE 1" not in cell[0] or "TRANSPARENCY_MASK 1'0" not in cell[0]:
+            return cell[0]
+        return cell[0].replace("COLLISION_X_MASK 1'0", "COLLISION_X_MASK 1'1")
+
+    def freed(module: re.Match[str]) -> str:
+        if len(set(_CLOCK.findall(module[0]))) > 1:
+            return module[0]  # Yosys promises nothing between two clocks
+        return _READ.sub(read, module[0])
+
+    return _MODULE.sub(freed, text)
+
+
+def write_rtlil(top: Any, name: str, folder: pathlib.Path, free: bool = False) -> str:
+    """Write `name`.il, without the places in the source: the same design gives the same text wherever it is. With `free`
+    its memories are as `free_collisions` has them.
 
     Beside it go the files in `top.verilog`, where it has that: the modules of its instances. Returns what has Yosys read
     all.
@@ -74,7 +101,7 @@ def write_rtlil(top: Any, name: str, folder: pathlib.Path) -> str:
     from amaranth.back import rtlil
 
     text = rtlil.convert(top, name=name, emit_src=False)
-    (folder / f"{name}.il").write_text(text, encoding="utf-8")
+    (folder / f"{name}.il").write_text(free_collisions(text) if free else text, encoding="utf-8")
     script = f"read_rtlil {name}.il"
     for path in getattr(top, "verilog", ()):
         shutil.copyfile(path, folder / f"user_{pathlib.Path(path).name}")

@@ -175,7 +175,8 @@ class UdpTx(wiring.Component):
         m = Module()
         i, o = self.i.stream, self.o.stream
         meta = self.i.meta
-        length = Cat(meta.length[:3], meta.length[3:] + 1)  # and udp.SIZE, 8
+        length = Signal(16)  # from the second cycle of SUM on
+        m.d.sync += length.eq(Cat(meta.length[:3], meta.length[3:] + 1))  # and udp.SIZE, 8
         numbers = {**{name: meta[name] for name in ("source_port", "destination_port")}, "length": length}
         words = [(word[8:16], word[:8]) for word in (meta.sum, *(numbers[field.name] for field in _NUMBERS))]
         octets = Cat(self.addresses.ip, meta.destination, *(octet for word in words for octet in word))
@@ -243,8 +244,8 @@ class PortSwitch(wiring.Component):
     Port n goes to output `outputs[n]`, or, where `outputs` is a number, to output n of so many. Ports: `i`; `port0` ..,
     steady port numbers; `o0` ... Of equal ports the first gets all.
 
-    Throughput one octet a cycle, without a register and without latency. A datagram to no such port is dropped whole, with
-    no output waited for, and counted by `drop_port` if its end is good.
+    Throughput one octet a cycle, without a register; each datagram waits one cycle, in which its port is compared. One to
+    no such port is dropped whole, with no output waited for, and counted by `drop_port` if its end is good.
     """
 
     def __init__(self, outputs: int | Sequence[int]) -> None:
@@ -263,11 +264,18 @@ class PortSwitch(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         i = self.i.stream
-        taken: Value = C(0)  # by an output before
+        compared = Signal()
+        taken: Value = ~compared  # or by an output before
+        with m.If(~compared):
+            m.d.sync += compared.eq(i.valid)
+        with m.Elif(i.valid & i.ready & i.payload.end):
+            m.d.sync += compared.eq(0)
         for n in sorted(set(self._outputs)):
             o = getattr(self, f"o{n}")
             ports = [getattr(self, f"port{k}") for k, output in enumerate(self._outputs) if output == n]
-            here = Cat(self.i.meta.destination_port == port for port in ports).any() & ~taken
+            same = Signal(name=f"same{n}")
+            m.d.sync += same.eq(Cat(self.i.meta.destination_port == port for port in ports).any())
+            here = same & ~taken
             m.d.comb += [
                 o.stream.payload.eq(i.payload),
                 o.meta.eq(self.i.meta),
@@ -276,6 +284,6 @@ class PortSwitch(wiring.Component):
             with m.If(here):
                 m.d.comb += i.ready.eq(o.stream.ready)
             taken = taken | here
-        with m.If(~taken):  # DROP, as long as the port is what it is
+        with m.If(~taken):  # DROP
             m.d.comb += [i.ready.eq(1), self.drop_port.eq(i.valid & i.payload.end & ~i.payload.bad)]
         return m

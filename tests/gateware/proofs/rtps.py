@@ -90,7 +90,7 @@ class QueueSpec(Spec):
         ]
 
 
-SKIPPED = """with m.If((left == 0) & ~to_end):
+SKIPPED = """with m.If(left[-1] & ~to_end):
                     m.next = "{}"
                 with m.Elif(i.valid & i.payload.end):"""
 
@@ -235,7 +235,7 @@ class SubmessagesSpec(Spec):
             Assert(~dut.write.en | scratch | (ended & ~i.payload.bad), "kept"),
             Cover(dut.write.en & ~scratch, "written"),
         ]
-        waits(m, i, 14, user.ready & dut.discovery.stream.ready, "taken")
+        waits(m, i, 15, user.ready & dut.discovery.stream.ready, "taken")
 
 
 class OutboxSpec(Spec):
@@ -376,7 +376,7 @@ class ComposerSpec(Spec):
                 | (dut.word[16:] == Const(20, 16) + (words << 2)),
                 "declared",
             ),
-            Assert(cycles <= needs + 6, "over"),
+            Assert(cycles <= needs + 7, "over"),
             Cover(running & dut.done & ~second & (words == 2), "message"),
         ]
 

@@ -99,7 +99,7 @@ def test_the_one_with_this_key_of_this_participant_and_of_this_kind_is_found_if_
             if right:
                 assert ctx.get(dut.endpoint) == right[0]
                 assert ctx.get(dut.info) == theirs[peers._endpoints + 8 * right[0] + 1]
-            assert cycles <= many + 3 + 5 * len(equal)
+            assert cycles <= many + 4 + 6 * len(equal)
             await ctx.tick()
 
     bench.drive(ask)

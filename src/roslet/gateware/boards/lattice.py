@@ -68,7 +68,7 @@ def build(
     `met`, whether all are as fast as they should be. Raises ToolMissing, ToolFailed; what does not fit is one of these.
     """
     toolchain.command(chip.placer)  # before the minutes that lie ahead
-    read = toolchain.write_rtlil(top, name, folder)
+    read = toolchain.write_rtlil(top, name, folder, free=True)
     netlist, report = f"{name}.json", f"{name}.report.json"
     script = f"{read}; {chip.synthesis} -top {name} -json {netlist}"
     toolchain.run("yosys", ["-q", "-p", script], folder)

@@ -14,11 +14,12 @@ SUBJECT = data.StructLayout(
     {"builtin": 1, "kind": 2, "slot": 8, "endpoint": 8, "entity": 8, "sample": 32, "words": 16}
 )
 """Whom and what it is about: the participant; the proxy, builtin or the user's; the number of our endpoint as its entity id
-has it; where the message begins in our own memory, and how many words it has."""
+has it; where the message begins in our own memory, its words behind its length, in bits that are zero here, and how many
+they are."""
 
 
 class Composer(wiring.Component):
-    """Runs through the template that begins at `at`, from `start`, high for a cycle, on: one word a cycle, from 6 cycles
+    """Runs through the template that begins at `at`, from `start`, high for a cycle, on: one word a cycle, from 7 cycles
     later.
 
     Ports: `subject`, steady until `done`, which is high a cycle or two after the last word; `register`, in the same
@@ -73,6 +74,8 @@ class Composer(wiring.Component):
             read.addr.eq(here),
             read.en.eq(~in_message),
             self.which.eq(argument[:4]),
+        ]
+        m.d.sync += [
             self.push.eq(ready[-1]),
             self.word.eq(
                 Mux(
@@ -82,8 +85,6 @@ class Composer(wiring.Component):
                 )
             ),
             self.done.eq(over[-1]),
-        ]
-        m.d.sync += [
             ready.eq(Cat(pushes, ready[:-1])),
             over.eq(Cat(ends, over[:-1])),
             literals[1].eq(literals[0]),
@@ -116,7 +117,7 @@ class Composer(wiring.Component):
                 with m.Case(Op.LENGTH.value):
                     m.d.sync += literals[0][16:].eq(argument[16:32] + Cat(C(0, 2), subject.words[:14]))
                 with m.Case(Op.MESSAGE.value):
-                    m.d.comb += [self.own.addr.eq(subject.sample + 1 + word), pushes.eq(in_message)]
+                    m.d.comb += [self.own.addr.eq(subject.sample | (word + 1)), pushes.eq(in_message)]
                     m.d.sync += [sources[0].eq(from_own), word.eq(word + 1)]
                 with m.Case(Op.END.value):
                     m.d.comb += [pushes.eq(0), ends.eq(1)]

@@ -16,6 +16,14 @@ from roslet.gateware.words import MessageSignature
 from roslet.wire.rtps.qos import TRANSIENT_LOCAL, VOLATILE
 
 
+class _Room:
+    """Of bits, a cycle after they have changed: `full`, none is low; `free`, which is the lowest one that is."""
+
+    def __init__(self, m: Module, taken: Value) -> None:
+        self.full, self.free = Signal(), Signal(range(len(taken)))
+        m.d.sync += [self.full.eq(taken.all()), self.free.eq(lowest(~taken))]
+
+
 class Discovery(wiring.Component):
     """The table of participants, and that of their endpoints that match ours.
 
@@ -86,6 +94,8 @@ class Discovery(wiring.Component):
         with m.If(self.greet):
             m.d.sync += arrived.eq(1)
         m.d.sync += [addressed.eq(step), before.eq(addressed)]
+        # Where somebody new may go; neither changes while a list is dealt with, until it has been looked at
+        self._slots, self._places = _Room(m, self.alive), _Room(m, self.matched)
         with m.If(self.tick):
             m.d.sync += ticked.eq(1)
         with m.If(self.heard):
@@ -204,6 +214,8 @@ class Discovery(wiring.Component):
         peers, meta, read = self._peers, self.i.meta, self._parameters.read
         slot, step, before = self._slot, self._step, self._before
         fresh = Signal()
+        lease = Signal(len(read.lease) + 1)  # with a second more
+        m.d.sync += lease.eq(read.lease + 1)
         with m.State("PARTICIPANT"):
             m.d.sync += [step.eq(0), fresh.eq(~meta.known)]
             m.next = "PROCEED"
@@ -213,14 +225,14 @@ class Discovery(wiring.Component):
                 m.d.comb += self.drop_refused.eq(1)
             with m.Elif(~read.guid | ~read.meta):
                 m.d.comb += self.drop_incomplete.eq(1)
-            with m.Elif(~meta.known & self.alive.all()):
+            with m.Elif(~meta.known & self._slots.full):
                 m.d.comb += self.drop_full.eq(1)
             with m.Elif(~meta.known & arrived):
                 pass  # most likely it says so twice
             with m.Else():
                 m.next = "COPY"
                 with m.If(~meta.known):
-                    m.d.sync += slot.eq(lowest(~self.alive))
+                    m.d.sync += slot.eq(self._slots.free)
         with m.State("COPY"):  # the scratch area, behind what is read
             source = Signal(4)
             m.d.comb += source.eq(step)
@@ -232,7 +244,7 @@ class Discovery(wiring.Component):
                 self._write(
                     m,
                     peers.participant(slot, before),
-                    Mux(before >= tables.LEASE, read.lease + 1, self.peers.data),
+                    Mux(before >= tables.LEASE, lease, self.peers.data),
                 )
             with m.If(step == tables.LEFT + READ_LATENCY):
                 m.d.sync += [
@@ -325,19 +337,20 @@ class Discovery(wiring.Component):
                 m.d.comb += self.drop_qos.eq(1)
                 with m.If(found):
                     m.d.sync += self.matched.bit_select(endpoint, 1).eq(0)
-            with m.Elif(~found & self.matched.all()):
+            with m.Elif(~found & self._places.full):
                 m.d.comb += self.drop_full.eq(1)
             with m.Else():
                 m.next = "PROXY"
                 with m.If(~found):
-                    m.d.sync += endpoint.eq(lowest(~self.matched))
+                    m.d.sync += endpoint.eq(self._places.free)
         with m.State("PROXY"):  # behind what is read
             last = self.own.data
             m.d.comb += self._own_address.eq(own.writer(local, tables.WRITER_LAST))
             where = Mux(step[0], tables.USER_PORT, tables.USER_IP)  # for IP, 2, and PORT, 3
             m.d.comb += self._address.eq(Mux(read.user, peers.scratch(where), peers.participant(slot, where)))
             # Before all that is kept, where it gets what was before it: numbers are compared by their difference.
-            first = last + Mux(transient, C(-MAX_HISTORY, 32), C(1, 32))
+            first = Signal(32)
+            m.d.sync += first.eq(last + Mux(transient, C(-MAX_HISTORY, 32), C(1, 32)))
             words = [
                 self._entity,
                 Cat(slot, local, C(0, 8 - len(local)), is_writer, reliable),

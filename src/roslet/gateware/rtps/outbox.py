@@ -138,11 +138,10 @@ class Outbox(wiring.Component):
                 m.next = "NUMBERS"
             with m.State("NUMBERS"):
                 m.d.sync += [port.eq(read.data[:16]), left.eq(read.data[16:]), at.eq(at + 1)]
-                m.d.sync += after.eq(done + HEADER + read.data[16:])
                 m.d.sync += octets.eq(Cat(C(0, 2), read.data[16:30]))
                 m.next = "SUM"
             with m.State("SUM"):
-                m.d.sync += [checksum.eq(read.data[:16]), at.eq(at + 1)]
+                m.d.sync += [checksum.eq(read.data[:16]), at.eq(at + 1), after.eq(at + left)]
                 m.next = "FIRST"
             with m.State("FIRST"):
                 m.d.sync += word.eq(read.data)

@@ -13,6 +13,7 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
+from roslet.gateware.compare import below
 from roslet.gateware.meta import ADDRESSES
 from roslet.gateware.rtps import ports, tables
 from roslet.gateware.rtps.ports import DISCOVERY, READ_LATENCY, ReadSignature, WriteSignature, exchanged
@@ -139,11 +140,13 @@ class Parameters(wiring.Component):
         came, ended = Signal(), Signal()
         m.d.comb += [came.eq(i.valid & ~i.payload.end), ended.eq(i.valid & i.payload.end)]
         little = Signal()
-        number = Mux(little, word, exchanged(word))
+        number = Signal(32)  # the word as one, in the cycle after
+        m.d.sync += number.eq(Mux(little, word, exchanged(word)))
         is_participant = meta.kind == ports.PARTICIPANTS
 
         what = Signal(_What)
-        left, at = Signal(14), Signal(10)  # words of a value: still to come, before
+        # Words of a value: still to come, less one, so that after the last the highest bit is set; and before
+        left, at = Signal(15), Signal(10)
         step = Signal(range(self.locals + READ_LATENCY + 1))  # within a word
         text_left = Signal(16)
         masked = Signal(32)
@@ -172,7 +175,7 @@ class Parameters(wiring.Component):
                 length = Mux(little, word[16:32], Cat(word[24:32], word[16:24]))
                 # What must be understood, and is not.
                 unknown = (pid & pl.FLAG_MUST_UNDERSTAND).any() & ~(pid & pl.FLAG_VENDOR).any()
-                m.d.sync += [what.eq(_What.SKIP), left.eq(length[2:]), at.eq(0), step.eq(0)]
+                m.d.sync += [what.eq(_What.SKIP), left.eq(length[2:] - 1), at.eq(0), step.eq(0)]
                 for here, table in ((is_participant, _OF_PARTICIPANTS), (~is_participant, _OF_ENDPOINTS)):
                     with m.If(here & came), m.Switch(pid):
                         for value, action in table.items():
@@ -190,13 +193,13 @@ class Parameters(wiring.Component):
                 with m.Elif(i.valid):
                     m.next = "MALFORMED"
             with m.State("VALUE"):
-                with m.If(left == 0):
+                with m.If(left[-1]):
                     m.next = "PARAMETER"
                 with m.Elif(ended):
                     m.next = "MALFORMED"
                 with m.Elif(came):
                     last = Signal()  # cycle of this word
-                    m.d.comb += [last.eq(1), i.ready.eq(last)]
+                    m.d.comb += [last.eq(step == 1), i.ready.eq(last)]
                     m.d.sync += step.eq(step + 1)
                     with m.If(last):
                         m.d.sync += [left.eq(left - 1), at.eq(at + ~at.all()), step.eq(0)]
@@ -238,7 +241,7 @@ class Parameters(wiring.Component):
             m.d.comb += [self.write.en.eq(1), self.write.addr.eq(target), self.write.data.eq(value)]
 
         def refuse(condition: Value) -> None:
-            with m.If(condition):
+            with m.If(condition & (step != 0)):
                 m.d.sync += read.refused.eq(1)
 
         first, second = at == 0, at == 1
@@ -246,12 +249,12 @@ class Parameters(wiring.Component):
             with m.Case(_What.GUID):
                 m.d.comb += self.peers.addr.eq(self._peers.scratch((tables.SCRATCH_SOURCE + at)[:4]))
                 m.d.comb += last.eq(step == READ_LATENCY)
-                with m.If(at < tables.META_IP):
+                with m.If(at == 3):
+                    m.d.sync += [read.entity.eq(word), read.guid.eq(1)]
+                with m.Elif(at[2:] == 0):
                     keep(self._peers.scratch(at), word)
                     with m.If(last & (self.peers.data != word)):
                         m.next = "MALFORMED"
-                with m.Elif(at == 3):
-                    m.d.sync += [read.entity.eq(word), read.guid.eq(1)]
             with m.Case(_What.LEASE), m.If(first):
                 m.d.sync += read.lease.eq(Mux(number[16:].any(), MAX_LEASE, number[:16]))
             for kind, flag, ip in (
@@ -266,7 +269,7 @@ class Parameters(wiring.Component):
                 if self._judge_domain:
                     refuse(first & (number != self.domain))
             with m.Case(_What.TAG):
-                refuse(first & (number > 1))  # a text with more than its NUL
+                refuse(first & (number[1:] != 0))  # a text with more than its NUL
             for kind, flag, is_type in ((_What.TOPIC, read.topic, 0), (_What.TYPE, read.type, 1)):
                 with m.Case(kind):
                     self._text(m, at, step, word, number, left, last, text_left, masked, flag, is_type)
@@ -313,7 +316,7 @@ class Parameters(wiring.Component):
         near = self._near[ip == tables.USER_IP]
         with m.If(at == 0):
             m.d.sync += usable.eq(number == locator.LOCATOR_KIND_UDPv4)
-        with m.Elif(at == 1):
+        with m.Elif((at == 1) & (step != 0)):
             m.d.sync += [port.eq(number), usable.eq(usable & (number[:16] != 0) & (number[16:] == 0))]
         with m.Elif(at == 5):
             wanted = usable & (word[:8] != 0) & (word[:8] != LOOPBACK) & (~flag | (is_near & ~near))
@@ -339,10 +342,10 @@ class Parameters(wiring.Component):
     ) -> None:
         """A text: compared, a word at a time, with that of each of our endpoints of the other kind."""
         first = at == 0
-        m.d.comb += masked.eq(Mux(first, number, word))
+        m.d.sync += masked.eq(Mux(first, number, word))  # which is looked at later: the word stays
         for n in range(4):
-            with m.If(~first & (text_left <= n)):
-                m.d.comb += masked.word_select(n, 8).eq(0)
+            with m.If(~first & below(text_left, n + 1)):
+                m.d.sync += masked.word_select(n, 8).eq(0)
         reader = self.i.meta.kind == ports.PUBLICATIONS
         m.d.comb += [
             self.own.addr.eq(self._own.text(reader, Const(is_type, 1), step, at)),
@@ -356,8 +359,8 @@ class Parameters(wiring.Component):
                 with m.If((shown == n) & (self.own.data != masked)):
                     m.d.sync += self.same[n].eq(0)
         with m.If(last):
-            m.d.sync += text_left.eq(Mux(text_left[2:] != 0, text_left - 4, 0))
+            m.d.sync += text_left.eq(Mux(text_left[2:] != 0, Cat(text_left[:2], text_left[2:] - 1), 0))
             with m.If(first):
                 m.d.sync += [text_left.eq(number), flag.eq(number[16:] == 0)]
-                with m.If((number == 0) | (number[16:] != 0) | (((number[:16] + 3) >> 2) >= left)):
+                with m.If((number == 0) | (number[16:] != 0) | (((number[:16] + 3) >> 2) > left[:-1])):
                     m.next = "MALFORMED"

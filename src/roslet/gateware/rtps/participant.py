@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from amaranth.hdl import Cat, Module, Signal
+from amaranth.hdl import Cat, Module, Signal, Value
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
@@ -148,8 +148,6 @@ class Participant(wiring.Component):
         m.submodules.lists = lists = FrameRegister(DISCOVERY, MessageSignature)
         connect(m, submessages.discovery, lists.i)
         connect(m, lists.o, discovery.i)
-        connect(m, discovery.due, turns.due0)
-        connect(m, submessages.due, turns.due1)
         connect(m, outbox.o, flipped(self.udp_tx))
         connect(m, outbox.lookup, flipped(self.lookup))
         for n in range(self._users):
@@ -205,6 +203,9 @@ class Participant(wiring.Component):
             self.alive.eq(discovery.alive),
             self.matched.eq(discovery.matched),
         ]
+        # In the cycle after, as what follows from them takes long
+        for given, due in ((discovery.due, turns.due0), (submessages.due, turns.due1)):
+            m.d.sync += [due.en.eq(given.en), due.proxy.eq(given.proxy)]
         self._memories(m, composer)
         return m
 
@@ -216,25 +217,32 @@ class Participant(wiring.Component):
         walker, submessages, discovery, sender = (
             blocks[name] for name in ("walker", "submessages", "discovery", "sender")
         )
-        receiving, sending = (walker, submessages, discovery), (sender, composer)
-        for group in (receiving, sending):
+        given: dict[tuple[str, str], tuple[Value, Signal]] = {}
+        for side, group in (("receiving", (walker, submessages, discovery)), ("sending", (sender, composer))):
             for mem, name in ((peers, "peers"), (own, "own")):
                 users = [getattr(block, name) for block in group if name in block.signature.members]
-                read = mem.read_port()
-                given = Signal(32)
-                m.d.sync += given.eq(read.data)
+                read, word = mem.read_port(), Signal(32)
+                m.d.sync += word.eq(read.data)
                 m.d.comb += read.addr.eq(_either(user.addr for user in users))
-                m.d.comb += [user.data.eq(given) for user in users]
-        for mem, writers in (
-            (peers, (walker.source, submessages.write, discovery.write)),
-            (own, (sender.write, self.own)),
+                m.d.comb += [user.data.eq(word) for user in users]
+                given[side, name] = read.addr, word
+        write, ours = peers.write_port(), own.write_port()
+        # Of peers in the cycle after, as what is written takes long.
+        for domain, port, writers in (
+            (m.d.sync, write, (walker.source, submessages.write, discovery.write)),
+            (m.d.comb, ours, (sender.write, self.own)),
         ):
-            write = mem.write_port()
-            m.d.comb += [
-                write.en.eq(Cat(writer.en for writer in writers).any()),
-                write.addr.eq(_either(writer.addr for writer in writers)),
-                write.data.eq(_either(writer.data for writer in writers)),
+            domain += [
+                port.en.eq(Cat(writer.en for writer in writers).any()),
+                port.addr.eq(_either(writer.addr for writer in writers)),
+                port.data.eq(_either(writer.data for writer in writers)),
             ]
+        # Block RAM gives anything of a word that is being written. Only who sends may read one, of a peer: it gets the new.
+        address, word = given["sending", "peers"]
+        looked_at, written, wrote, new = Signal.like(address), Signal.like(write.addr), Signal(), Signal(32)
+        m.d.sync += [looked_at.eq(address), written.eq(write.addr), wrote.eq(write.en), new.eq(write.data)]
+        with m.If(wrote & (looked_at == written)):
+            m.d.sync += word.eq(new)
 
 
 def _either(values: Any) -> Any:

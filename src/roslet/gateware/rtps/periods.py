@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Module, Mux, Signal, Value
+from amaranth.hdl import Cat, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -15,25 +15,26 @@ PRESCALER_BITS = 16
 
 class Periods(wiring.Component):
     """Pulses of one cycle, while `enable` is high: `tick` each `second` cycles; `announce`, `sweep`, `publish` each so many
-    steps as their period says, where a step is `prescaler_div` cycles; `sweep` has two periods, either of which counts.
+    steps as their period says, where a step is `prescaler_div` cycles; `sweep` has several periods, any of which counts.
 
     The first announcement comes at once, and the next ones `quick` steps apart: peers that start together find each other
     although some are lost. The first `publish` comes a period after `publishing` has risen, and none while it is low.
 
     Of what is due at the same time one comes after the other, `interval` steps apart. What is due again before it came comes
-    once. A period of 0 is one of 1.
+    once. A period of 0 is one of 1. Periods have `bits`.
     """
 
-    def __init__(self, second: int, quick: int) -> None:
-        if second < 1 or not 0 <= quick < 1 << BITS:
+    def __init__(self, second: int, quick: int, sweeps: int = 2, bits: int = BITS) -> None:
+        if second < 1 or not 0 <= quick < 1 << bits:
             raise ValueError(f"a second of {second} cycles and a period of {quick} steps cannot be counted")
-        self._second, self._quick = second, quick
+        self._second, self._quick, self._bits = second, quick, bits
+        self._sweeps = [f"sweep{n}" for n in range(sweeps)]
         super().__init__(
             {
                 "enable": In(1),
                 "publishing": In(1),
                 "prescaler_div": In(PRESCALER_BITS),
-                **{name: In(BITS) for name in ("interval", "announcement", "sweep0", "sweep1", "message")},
+                **{name: In(bits) for name in ("interval", "announcement", *self._sweeps, "message")},
                 **{name: Out(1) for name in ("tick", "announce", "sweep", "publish")},
             }
         )
@@ -54,7 +55,7 @@ class Periods(wiring.Component):
 
         def due(name: str, period: Value, running: Value, first: int | None = None) -> Signal:
             """High in the cycle after the last step of a period; the first one is as long, or has `first` steps."""
-            left = Signal(BITS, init=first or 0, name=f"{name}_left")
+            left = Signal(self._bits, init=first or 0, name=f"{name}_left")
             last = Signal(name=f"{name}_last")  # step of the period: looked at a cycle before it counts
             over = Signal(name=f"{name}_over")
             m.d.sync += [last.eq(left[1:] == 0), over.eq(step & last & running)]
@@ -67,10 +68,10 @@ class Periods(wiring.Component):
         announced = due("announcement", Mux(quick != 0, self._quick, self.announcement), self.enable, 1)
         with m.If(announced & (quick != 0)):
             m.d.sync += quick.eq(quick - 1)
-        swept = due("sweep0", self.sweep0, self.enable), due("sweep1", self.sweep1, self.enable)
+        swept = Cat(due(name, getattr(self, name), self.enable) for name in self._sweeps).any()
         published = due("message", self.message, self.publishing & self.enable)
 
-        gap = Signal(BITS)
+        gap = Signal(self._bits)
         free = Signal()
         m.d.sync += free.eq(gap == 0)
         with m.If(step & (gap != 0)):
@@ -78,7 +79,7 @@ class Periods(wiring.Component):
         given: Value = ~free  # to one before
         for output, over in (
             (self.announce, announced),
-            (self.sweep, swept[0] | swept[1]),
+            (self.sweep, swept),
             (self.publish, published),
         ):
             waiting = Signal(name=f"{output.name}_waiting")

@@ -27,19 +27,23 @@ def find_endpoint(
     those in `matched`, by `address` and `given` of a read port.
 
     In state `then`, `found` says whether it is there; if so, it is `endpoint`, and `info` is its INFO. `found` must be low
-    before. Takes one cycle for each endpoint and two more, and five for each other endpoint with an equal id.
+    before. Takes one cycle for each endpoint and three more, and six for each other endpoint with an equal id.
     """
     many = peers.endpoints
-    step = Signal(range(many + READ_LATENCY))
-    addressed, shown = Signal(range(many)), Signal(range(many))  # whose word the memory gives next, and now
-    reads = Signal(range(READ_LATENCY + 1))  # under way, since the scan began or went on
+    latency = READ_LATENCY + 1  # until it is known whether it is the one
+    step = Signal(range(many + latency))
+    # Whose word the memory gives next, gives now, and gave before
+    addressed, given_of, shown = (Signal(range(many)) for _ in range(3))
+    same = Signal()
+    reads = Signal(range(latency + 1))  # under way, since the scan began or went on
+    m.d.sync += same.eq((given == key) & matched.bit_select(given_of, 1))
     last = shown == many - 1
     with m.State("SCAN"):
         m.d.comb += address.eq(peers.endpoint(step, tables.KEY))
-        m.d.sync += [step.eq(step + 1), addressed.eq(step), shown.eq(addressed)]
-        with m.If(reads != READ_LATENCY):
+        m.d.sync += [step.eq(step + 1), addressed.eq(step), given_of.eq(addressed), shown.eq(given_of)]
+        with m.If(reads != latency):
             m.d.sync += reads.eq(reads + 1)
-        with m.Elif((given == key) & matched.bit_select(shown, 1)):
+        with m.Elif(same):
             m.d.sync += [endpoint.eq(shown), step.eq(shown + 1), reads.eq(0), shown.eq(shown)]
             m.next = "INFO"
         with m.Elif(last):

@@ -190,13 +190,7 @@ class Sender(wiring.Component):
 
     def _sample(self, number: Value) -> Value:
         """Where our writer keeps the message with this number."""
-        own = self._own
-        places = [
-            C(base, own.address_bits)
-            + (number[: one.depth.bit_length() - 1] << (own.stride(one).bit_length() - 1))
-            for base, one in zip(own.samples, own.writers, strict=True)
-        ]
-        return self._choose(places)
+        return self._choose([self._own.sample(n, number) for n in range(len(self._own.writers))])
 
     # -- whose turn it is
 
@@ -342,7 +336,8 @@ class Sender(wiring.Component):
         """A peer's reader: what we have, and what it has and asks for."""
         own, subject = self._own, self.subject
         ask_to = Signal(AGE)
-        start, unacknowledged = Signal(AGE), Signal()
+        start, unacknowledged, lost = Signal(AGE), Signal(), Signal()
+        over = Signal()  # nothing more is asked for
         kinds = len(own.writers) - 1, len(own.readers) - 1  # ages of the oldest that discovery has to say
         with m.State("READER"):
             m.d.sync += self.ip.eq(self.peers.data)
@@ -391,26 +386,33 @@ class Sender(wiring.Component):
             m.next = "JUDGE"
         with m.State("JUDGE"):
             m.next = "IDLE"
+            m.d.sync += lost.eq((self._age > self._oldest) & (self._age < start) & (self._age >= ask_to))
             with m.If(self._asked):
-                m.next = "RESEND"
-                lost = (self._age > self._oldest) & (self._age < start) & (self._age >= ask_to)
-                with m.If(lost & ~subject.builtin):
-                    self._compose(m, self._rom.start["gap"], "RESEND")
+                m.next = "LOST"
             with m.Elif(unacknowledged):
                 m.next = "HEARTBEAT"
+        with m.State("LOST"):
+            m.next = "RESEND"
+            with m.If(lost & ~subject.builtin):
+                self._compose(m, self._rom.start["gap"], "RESEND")
         with m.State("RESEND"):
             with m.If(self._age > self._oldest):
                 m.d.sync += self._age.eq(self._oldest)
-            m.next = "AGAIN"
-        with m.State("AGAIN"):
-            number = (self._last - self._age)[:16]
-            m.d.comb += self.own.addr.eq(self._sample(number))
-            m.d.sync += subject.sample.eq(self._sample(number))
-            m.next = "KEPT SAMPLE"
+            m.next = "AGED"
+        with m.State("AGED"):
+            m.d.sync += [
+                over.eq(self._age < ask_to),
+                subject.sample.eq(self._sample((self._last - self._age)[:16])),
+            ]
             with m.If(subject.builtin):
                 m.d.sync += self._local.eq(self._oldest - self._age)
+            m.next = "AGAIN"
+        with m.State("AGAIN"):
+            m.d.comb += self.own.addr.eq(subject.sample)
+            m.next = "KEPT SAMPLE"
+            with m.If(subject.builtin):
                 m.next = "DISCOVERY"
-            with m.If(self._age < ask_to):
+            with m.If(over):
                 m.next = "HEARTBEAT"
         with m.State("DISCOVERY"):
             starts = [
@@ -436,7 +438,7 @@ class Sender(wiring.Component):
             self._compose(m, self._rom.start["message"], "NEXT")
         with m.State("NEXT"):
             m.d.sync += self._age.eq(self._age - 1)
-            m.next = "AGAIN"
+            m.next = "AGED"
         with m.State("HEARTBEAT"):
             m.d.comb += self.own.addr.eq(own.own(tables.HEARTBEAT_COUNT))
             m.next = "HEARTBEATS"
@@ -462,10 +464,13 @@ class Sender(wiring.Component):
             item.eq(Array(Value.cast(one.payload) for one in streams)[self._local]),
             valid.eq(Array(one.valid for one in streams)[self._local]),
         ]
-        words, long = Signal(16), Signal()
-        step = Signal(range(peers.endpoints + READ_LATENCY + 1))
-        addressed, shown = Signal(range(peers.endpoints)), Signal(range(peers.endpoints))
-        reads = Signal(range(READ_LATENCY + 1))  # under way
+        words, long, full = subject.words, Signal(), Signal()
+        most = self._choose([C(one.words, 16) for one in own.writers])
+        latency = READ_LATENCY + 1  # until it is known whether it is one
+        step = Signal(range(peers.endpoints + latency + 1))
+        addressed, given_of, shown = (Signal(range(peers.endpoints)) for _ in range(3))
+        reads = Signal(range(latency + 1))  # under way
+        ours = Signal()
         start = Signal(AGE)
         with m.State("PUBLISH"):
             m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST))
@@ -483,11 +488,10 @@ class Sender(wiring.Component):
             m.d.sync += subject.sample.eq(self._sample(self._last))
             m.next = "KEPT"
         with m.State("KEPT"):
-            full = self.own.data[:16] == self._choose([C(one.depth, 16) for one in own.writers])
-            m.d.sync += self._kept.eq(Mux(full, self.own.data, self._increased))
+            all_kept = self.own.data[:16] == self._choose([C(one.depth, 16) for one in own.writers])
+            m.d.sync += [self._kept.eq(Mux(all_kept, self.own.data, self._increased)), full.eq(most == 0)]
             m.next = "KEEP"
         with m.State("KEEP"):
-            full = words == self._choose([C(one.words, 16) for one in own.writers])
             for n, one in enumerate(streams):
                 with m.If(self._local == n):
                     m.d.comb += one.ready.eq(1)
@@ -495,10 +499,10 @@ class Sender(wiring.Component):
                 with m.If(full):
                     m.d.sync += long.eq(1)
                 with m.Else():
-                    m.d.sync += words.eq(words + 1)
-                    self._write(m, subject.sample + 1 + words, item.data)
+                    m.d.sync += [words.eq(words + 1), full.eq((words + 1)[:16] == most)]
+                    self._write(m, subject.sample | (words + 1), item.data)
             with m.If(valid & item.end):
-                m.d.sync += [self._padding.eq(item.padding), subject.words.eq(words)]
+                m.d.sync += self._padding.eq(item.padding)
                 m.next = "SIZE"
                 with m.If(item.bad | long):
                     for n in range(self._users):
@@ -520,23 +524,27 @@ class Sender(wiring.Component):
             m.next = "EACH READER"
         with m.State("EACH READER"):  # an endpoint a cycle
             info = self.peers.data
-            ours = self.matched.bit_select(shown, 1) & ~info[tables.INFO_WRITER]
-            ours &= info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8] == self._local
+            is_reader = self.matched.bit_select(given_of, 1) & ~info[tables.INFO_WRITER]
             m.d.comb += self.peers.addr.eq(peers.endpoint(step, tables.INFO))
             m.d.sync += [
                 step.eq(step + 1),
                 addressed.eq(step),
-                shown.eq(addressed),
+                given_of.eq(addressed),
+                shown.eq(given_of),
                 endpoint.eq(shown),
-                subject.slot.eq(info[tables.INFO_SLOT : tables.INFO_SLOT + 8]),
-                self._reliable.eq(info[tables.INFO_RELIABLE]),
+                ours.eq(is_reader & (info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8] == self._local)),
                 self._oldest.eq((self._kept - 1)[:16].as_signed()),
             ]
-            with m.If(reads != READ_LATENCY):
-                m.d.sync += reads.eq(reads + 1)
-            with m.Elif(ours):
+            with m.If((reads == latency) & ours):
                 m.next = "THE READER"
-            with m.Elif(shown == peers.endpoints - 1):
+            with m.Else():
+                m.d.sync += [
+                    subject.slot.eq(info[tables.INFO_SLOT : tables.INFO_SLOT + 8]),
+                    self._reliable.eq(info[tables.INFO_RELIABLE]),
+                ]
+            with m.If(reads != latency):
+                m.d.sync += reads.eq(reads + 1)
+            with m.Elif(~ours & (shown == peers.endpoints - 1)):
                 m.d.sync += self._yield.eq(1)
                 m.next = "IDLE"
         with m.State("THE READER"):

@@ -8,6 +8,7 @@ from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from roslet.gateware.compare import below
 from roslet.gateware.rtps import ports, tables
 from roslet.gateware.rtps.ports import (
     DISCOVERY,
@@ -109,26 +110,25 @@ class Submessages(wiring.Component):
         sn, wanted = Signal(64), Signal(32)
         wanted_high = Signal(32)
         ahead = Signal(65)
-        # The number is the one that is wanted, or before it; a cycle after either has changed
-        same, behind = Signal(), Signal()
-        m.d.sync += [same.eq(ahead == 0), behind.eq(ahead[64])]
-        known = Signal()  # what is wanted
-        legal = Signal()  # as a number
         after, after_high = Signal(32), Signal(32)  # the number behind `sn`
-        m.d.comb += Cat(after, after_high).eq(sn + 1)
-        m.d.comb += [
-            ahead.eq(sn - Cat(wanted, wanted_high)),
-            known.eq((wanted != 0) | (wanted_high != 0)),
+        m.d.comb += [Cat(after, after_high).eq(sn + 1), ahead.eq(sn - Cat(wanted, wanted_high))]
+        # A cycle after either has changed: the number is the one that is wanted, or before it; it is one; what is wanted is
+        # known.
+        same, behind, legal, known = Signal(), Signal(), Signal(), Signal()
+        m.d.sync += [
+            same.eq(ahead == 0),
+            behind.eq(ahead[64]),
             legal.eq(~sn[63] & (sn != 0)),
+            known.eq((wanted != 0) | (wanted_high != 0)),
         ]
         for_any = Signal()  # reader id unknown
-        reader_number = Signal(8)
+        reader_number = Signal(8)  # from 0 on; in its entity id it is in the third octet, from 1 on
         builtin, builtin_kind, spdp = Signal(), Signal(2), Signal()
         found = Signal()  # a proxy; `endpoint` is the user's
         endpoint = Signal(range(self._peers.endpoints))
         info = Signal(32)
         skip = Signal(15)
-        one = Signal()  # of a set, the bit that is looked at
+        place, one = Signal(6), Signal()  # of a set, the bit that is looked at
         gone, has_key = Signal(), Signal()
         reason = Signal(2)  # why DATA is not taken
         unmatched, old, early, busy = range(4)
@@ -185,12 +185,12 @@ class Submessages(wiring.Component):
             with m.State("DATA"):
                 to_qos = Mux(meta.flags[0], word[16:32], Cat(word[24:32], word[16:24]))
                 take("READER")
-                m.d.sync += skip.eq(to_qos[2:] - TO_INLINE_QOS // 4)
+                m.d.sync += skip.eq(to_qos[2:])
                 both = meta.flags & (data_submessage.FLAG_D | data_submessage.FLAG_K)
                 with m.If(
                     came
                     & (
-                        (to_qos < TO_INLINE_QOS)
+                        below(to_qos, TO_INLINE_QOS)
                         | (to_qos[:2] != 0)
                         | (both == data_submessage.FLAG_D | data_submessage.FLAG_K)
                     )
@@ -199,7 +199,7 @@ class Submessages(wiring.Component):
             with m.State("READER"):
                 m.d.sync += [
                     for_any.eq(word == 0),
-                    reader_number.eq(word[16:24]),
+                    reader_number.eq(word[16:24] - 1),
                 ]
                 take("WRITER")
                 with m.If(came & (meta.id == submessage.ACKNACK)):
@@ -270,12 +270,10 @@ class Submessages(wiring.Component):
                         take("FIRST")
             # -- DATA
             with m.State("EXTRA"):
-                with m.If(skip != 0):
+                with m.If(skip != TO_INLINE_QOS // 4):
                     with m.If(came):
                         m.d.sync += skip.eq(skip - 1)
                     take("EXTRA")
-                with m.Elif(~legal):
-                    m.next = "INVALID"
                 with m.Elif(meta.flags & data_submessage.FLAG_Q):
                     m.next = "QOS"
                 with m.Else():
@@ -284,10 +282,11 @@ class Submessages(wiring.Component):
             with m.State("JUDGE"):
                 local = info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8]
                 room = self.room.bit_select(local[: max(1, (self._readers - 1).bit_length())], 1)
-                # Our readers' entity ids have their number, from 1 on, in the third octet.
-                for_us = for_any | (reader_number == local + 1)
+                for_us = for_any | (reader_number == local)
                 m.next = "DROP"
-                with m.If(spdp):
+                with m.If(~legal):
+                    m.next = "INVALID"
+                with m.Elif(spdp):
                     m.next = "DISCOVERY"
                 with m.Elif(~found | (~builtin & ~for_us)):
                     m.d.sync += reason.eq(unmatched)
@@ -386,7 +385,7 @@ class Submessages(wiring.Component):
                         m.d.sync += sn[32:].eq(number)
                     take("LAST LOW")
             with m.State("LAST LOW"):
-                m.d.sync += [sn[:32].eq(number), last_lo.eq(0)]
+                m.d.sync += [sn[:32].eq(number), place.eq(0)]
                 take("COUNT")
                 with m.If(came & (meta.id == submessage.GAP)):
                     m.next = "GAP BASE"
@@ -423,10 +422,10 @@ class Submessages(wiring.Component):
                     m.next = "INVALID"
             with m.State("GAP SET"):
                 # The run of ones at the beginning of the first word, a bit in two cycles; what is behind is asked for again.
-                with m.If(came & (skip != 0) & ~last_lo[5] & one & same):
+                with m.If(came & (skip != 0) & ~place[5] & one & same):
                     m.d.sync += [
                         Cat(sn, wanted, wanted_high).eq(Cat(after, after_high, after, after_high)),
-                        last_lo.eq(last_lo + 1),
+                        place.eq(place + 1),
                         skip.eq(skip - 1),
                     ]
                     m.next = "GAP NEXT"
@@ -442,7 +441,7 @@ class Submessages(wiring.Component):
                     with m.Elif(ended):
                         m.next = "INVALID"
             with m.State("GAP NEXT"):
-                m.d.sync += one.eq(number.bit_select(~last_lo[:5], 1))
+                m.d.sync += one.eq(number.bit_select(~place[:5], 1))
                 with m.If(i.valid):
                     m.next = "GAP SET"
             with m.State("ACKNACK BITS"):
@@ -516,7 +515,7 @@ class Submessages(wiring.Component):
             m.d.comb += i.ready.eq(1)
             m.d.sync += skip.eq(number[:9])
             m.next = state
-            with m.If(number > MAX_BITS):
+            with m.If(~below(number, MAX_BITS + 1)):
                 m.next = "INVALID"
         with m.If(ended):
             m.next = "INVALID"

@@ -160,15 +160,23 @@ class OwnMap:
         longest = max((room for both in rooms for room in both), default=1)
         self.text_bits = _bits(1 + (longest + 3) // 4)
         self.local_bits = _bits(most)
-        sizes = (OWN_WORDS, WRITER << self.local_bits, 1 << (self.text_bits + self.local_bits + 2))
-        (self._own, self._writers, self._texts), at = _aligned(sizes)
-        self.samples: list[int] = []
+        sizes = (
+            OWN_WORDS,
+            WRITER << self.local_bits,
+            1 << (self.text_bits + self.local_bits + 2),
+            *(self.stride(local) * local.depth for local in self.writers),
+        )
+        starts, self.depth = _aligned(sizes)
+        self._own, self._writers, self._texts = starts[:3]
+        self.samples = starts[3:]
         """Where the samples of each writer begin."""
-        for local in self.writers:
-            self.samples.append(at)
-            at += self.stride(local) * local.depth
-        self.depth = at
         self.address_bits = _bits(self.depth)
+
+    def sample(self, writer: int, number: Value) -> Value:
+        """Where a writer keeps the message with this number; nothing is in the bits below, where its words are counted."""
+        local = self.writers[writer]
+        low = Cat(Const(0, self.stride(local).bit_length() - 1), number[: local.depth.bit_length() - 1])
+        return Cat(low, Const(self.samples[writer] >> len(low), self.address_bits - len(low)))
 
     @staticmethod
     def stride(local: Local) -> int:

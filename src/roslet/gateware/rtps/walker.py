@@ -6,6 +6,7 @@ from amaranth.hdl import Cat, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from roslet.gateware.compare import below
 from roslet.gateware.rtps.ports import READ_LATENCY, SUBMESSAGE, ReadSignature, WriteSignature
 from roslet.gateware.rtps.tables import OWN_PREFIX, PREFIX, SCRATCH_SOURCE, OwnMap, PeerMap
 from roslet.gateware.words import MessageSignature
@@ -72,7 +73,7 @@ class Walker(wiring.Component):
         m.d.comb += came.eq(i.valid & ~i.payload.end)
 
         kind, flags = Signal(8), Signal(8)
-        left = Signal(15)  # words of the submessage
+        left = Signal(15)  # words of the submessage, less one: after the last its highest bit is set
         to_end = Signal()  # it goes to the end of the message
         tail = Signal(2)  # octets by which its length misses whole words
         for_us = Signal()
@@ -90,7 +91,7 @@ class Walker(wiring.Component):
         with m.FSM() as fsm:
             m.d.comb += self.idle.eq(fsm.ongoing("START"))
             with m.State("START"):
-                m.d.sync += [for_us.eq(1), at.eq(0), left.eq(0), to_end.eq(0)]
+                m.d.sync += [for_us.eq(1), at.eq(0), left.eq(-1), to_end.eq(0)]
                 with m.If(i.valid & ~self.hold):
                     m.next = "PROTOCOL"
             with m.State("PROTOCOL"):
@@ -123,7 +124,7 @@ class Walker(wiring.Component):
                     m.d.sync += [
                         kind.eq(word[:8]),
                         flags.eq(word[8:16]),
-                        left.eq((length + 3)[2:]),
+                        left.eq((length - 1)[2:]),
                         tail.eq(-length[:2]),
                         to_end.eq(length == 0),
                     ]
@@ -140,14 +141,14 @@ class Walker(wiring.Component):
                         with m.Case(*FRAGMENTS):
                             m.d.comb += self.drop_fragment.eq(for_us)
             with m.State("DESTINATION"):
-                with m.If((at == 0) & (left < _PREFIX_WORDS) & ~to_end):
+                with m.If((at == 0) & self._fewer(left, _PREFIX_WORDS) & ~to_end):
                     m.next = "SKIP"
                 with m.Else():
                     self._compare_own(m, came, at, left, for_us)
                     with m.If(i.valid & i.payload.end):
                         m.next = "SHORT"
             with m.State("SOURCE"):
-                with m.If((at == 0) & (left < _INFO_SRC_WORDS) & ~to_end):
+                with m.If((at == 0) & self._fewer(left, _INFO_SRC_WORDS) & ~to_end):
                     m.next = "SKIP"
                 with m.Elif(came):
                     m.d.comb += i.ready.eq(1)
@@ -158,7 +159,7 @@ class Walker(wiring.Component):
                 with m.If(i.valid & i.payload.end):
                     m.next = "SHORT"
             with m.State("BODY"):
-                ended = (left == 0) & ~to_end
+                ended = left[-1] & ~to_end
                 with m.If(ended):
                     m.next = "BODY END"
                 with m.Elif(i.valid & i.payload.end):
@@ -190,7 +191,7 @@ class Walker(wiring.Component):
                 with m.If(o.ready):
                     m.next = "SHORT"
             with m.State("SKIP"):
-                with m.If((left == 0) & ~to_end):
+                with m.If(left[-1] & ~to_end):
                     m.next = "SUBMESSAGE"
                 with m.Elif(i.valid & i.payload.end):
                     m.next = "END"
@@ -213,6 +214,11 @@ class Walker(wiring.Component):
                             m.d.comb += reason.eq(~i.payload.bad)
                         m.next = "START"
         return m
+
+    @staticmethod
+    def _fewer(left: Value, words: int) -> Value:
+        """Whether so many words are not left."""
+        return left[-1] | below(left[:-1], words - 1)
 
     def _prefix(self, m: Module, word: Value, came: Value, at: Value, slot: Value, is_known: Value) -> None:
         """Compare each word of a prefix, as it stands there, with that of each participant."""

@@ -142,7 +142,8 @@ class RosCore(EthernetNode):
         )
         self._switch = PortSwitch((0, 0, 0))
         self._loader = self._session(participant, identity, info)
-        self._periods = Periods(round(clk_hz), self._steps(QUICK_PERIOD))
+        bits = self._steps(ANNOUNCEMENT).bit_length()  # the longest period
+        self._periods = Periods(round(clk_hz), self._steps(QUICK_PERIOD), 1, bits)
         members = participant.signature.members
         self._user_ports = [
             name for name in members if name.startswith(("publish", "receive")) or name in NODE
@@ -206,7 +207,7 @@ class RosCore(EthernetNode):
             periods.enable.eq(running),
             periods.prescaler_div.eq(STEP),
             periods.announcement.eq(self._steps(ANNOUNCEMENT)),
-            *(period.eq(self._steps(REMINDER)) for period in (periods.sweep0, periods.sweep1)),
+            periods.sweep0.eq(self._steps(REMINDER)),
             rtps.tick.eq(periods.tick),
             rtps.announce.eq(periods.announce),
             rtps.sweep.eq(periods.sweep),
