@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from amaranth.hdl import Assert, Assume, Const, Cover, Module, Mux, Signal, Value
+from amaranth.hdl import Assert, Assume, Cat, Const, Cover, Module, Mux, Signal, Value
 
 from gateware.formal import Bug, Spec, assume_steady
-from roslet.gateware.rtps import composer, outbox, queue, submessages, walker
+from roslet.gateware.rtps import composer, outbox, parameters, queue, submessages, walker
 from roslet.gateware.rtps.rom import Op
 from roslet.gateware.rtps.tables import Local, OwnMap, PeerMap
 from roslet.wire.rtps.submessage import GAP
@@ -238,6 +238,77 @@ class SubmessagesSpec(Spec):
         waits(m, i, 15, user.ready & dut.discovery.stream.ready, "taken")
 
 
+class ParametersSpec(Spec):
+    """`done`: a list is read only at a good end, and if it is none or ended with its sentinel, behind whole values. `stays`:
+    what is read of it is steady until it may proceed. `told`: of what ended well something is said. `kept`: nothing but
+    the scratch area is written. `taken`: what comes is taken within some cycles, but for the end of what is read."""
+
+    module = parameters
+    quick, deep = 17, 26
+    bugs = (
+        Bug("done", "self.done.eq(~i.payload.bad)", "self.done.eq(1)"),
+        Bug(
+            "done",
+            'with m.Elif(ended):\n                    m.next = "MALFORMED"',
+            'with m.Elif(ended):\n                    m.next = "DONE"',
+        ),
+        Bug("done", "left, at = Signal(15)", "left, at = Signal(2)"),
+        Bug("stays", "i.ready.eq(self.proceed | i.payload.bad)", "i.ready.eq(1)"),
+        Bug("told", "self.drop_malformed.eq(ended & ~i.payload.bad)", "self.drop_malformed.eq(0)"),
+        Bug(
+            "kept",
+            "keep(self._peers.scratch(at), word)",
+            "keep(self._peers.participant(Const(0, 1), at), word)",
+        ),
+        Bug(
+            "taken",
+            "m.d.comb += [i.ready.eq(1), self.drop_malformed",
+            "m.d.comb += [i.ready.eq(came), self.drop_malformed",
+        ),
+    )
+
+    def block(self) -> Any:
+        return self.gates.Parameters(PeerMap(1, 1), OwnMap([Local("t", "T")], [Local("t", "T")]))
+
+    def properties(self, m: Module) -> None:
+        dut = self.dut
+        rules = self.assume(m, "i")
+        i = dut.i.stream
+        word, taken = i.payload.data, rules.transfer & ~i.payload.end
+        # 9.4.2.11: what must follow now
+        beginning, header, value, rest, wrong = range(5)
+        expected, little, left = Signal(range(5)), Signal(), Signal(14)
+        pid = Mux(little, word[:16], Cat(word[8:16], word[:8]))
+        length = Mux(little, word[16:], Cat(word[24:], word[16:24]))
+        with m.If(taken), m.Switch(expected):
+            with m.Case(beginning):
+                right = (word[:8] == 0) & ((word[8:16] == 2) | (word[8:16] == 3))
+                m.d.sync += [little.eq(word[8]), expected.eq(Mux(right, header, wrong))]
+            with m.Case(header):
+                m.d.sync += [left.eq(length[2:]), expected.eq(Mux(length[2:] != 0, value, header))]
+                with m.If(length[:2] != 0):
+                    m.d.sync += expected.eq(wrong)
+                with m.If(pid == 1):
+                    m.d.sync += expected.eq(rest)
+            with m.Case(value):
+                m.d.sync += [left.eq(left - 1), expected.eq(Mux(left == 1, header, value))]
+        with m.If(rules.ended):
+            m.d.sync += expected.eq(beginning)
+        good = i.valid & i.payload.end & ~i.payload.bad
+        held, read, same = Signal(), Signal.like(dut.read.as_value()), Signal.like(dut.same)
+        m.d.sync += [held.eq(dut.done & ~dut.proceed), read.eq(dut.read), same.eq(dut.same)]
+        m.d.comb += [
+            Assert(~dut.done | (good & ((expected == beginning) | (expected == rest))), "done"),
+            Assert(~held | (dut.done & (dut.read.as_value() == read) & (dut.same == same)), "stays"),
+            Assert(~(rules.ended & good) | (dut.done ^ dut.drop_malformed), "told"),
+            Assert(~dut.drop_malformed | (rules.ended & good), "told"),
+            Assert(~dut.write.en | (dut.write.addr[4:] == PeerMap(1, 1)._scratch >> 4), "kept"),
+            Cover(dut.done & (expected == rest) & dut.read.refused, "refused"),
+            Cover(dut.write.en, "written"),
+        ]
+        waits(m, i, 6, ~dut.done | dut.proceed, "taken")
+
+
 class OutboxSpec(Spec):
     """Of datagrams written one after another, each is sent or dropped, in that order: `length`, `where` it goes, and
     `content`, any octet of any of them. Of their sums nothing is said, and none are made."""
@@ -381,4 +452,11 @@ class ComposerSpec(Spec):
         ]
 
 
-SPECS: tuple[type[Spec], ...] = (QueueSpec, WalkerSpec, SubmessagesSpec, OutboxSpec, ComposerSpec)
+SPECS: tuple[type[Spec], ...] = (
+    QueueSpec,
+    WalkerSpec,
+    SubmessagesSpec,
+    ParametersSpec,
+    OutboxSpec,
+    ComposerSpec,
+)
