@@ -91,6 +91,7 @@ class Engine:
         self.chunk = CHUNK
         self.room = ROOM
         self.max_body = MAX_BODY
+        self.lends = False  # whether views that sinks and handlers get are good until they return
         self._ids = 0
         self._new: list[Machine | RpcClient] = []
         self._touched: list[Machine | RpcClient] = []

@@ -151,7 +151,7 @@ class FrameLink(Machine):
         self, engine: "Engine", maximum: int = MAX_FRAME, prefix: int = 0, copies: bool = False
     ) -> None:
         super().__init__(engine)
-        self.frames = FrameReceiver(self._deliver, maximum, prefix, engine.chunk, copies)
+        self.frames = FrameReceiver(self._deliver, maximum, prefix, engine.chunk, copies, engine.lends)
         self.messages = 0
         self.bytes = 0
         self.peer_header: dict[str, str] = {}

@@ -4,6 +4,7 @@ Whoever waits (`run_until`) serves the loop. While a callback of the user runs, 
 there serves the network, and what would run user code waits in a bounded queue until the callback has returned.
 """
 
+import gc
 import select
 import time
 
@@ -25,6 +26,8 @@ MAX_SLEEP = 1.0
 IDLE_LOOK = 5
 # Sockets that are served before the poller is asked again.
 MAX_READY = 16
+# The part of the free heap after which garbage is collected: what is kept then lies together, with room for large messages.
+GARBAGE = 4
 # Calls that wait for a callback of the user to return; more are dropped and counted.
 MAX_LATER = 32
 
@@ -50,6 +53,9 @@ class Loop:
         self._later: list[tuple[Callable[[Any], None], Any]] = []
         self._last = _time.ticks_us()
         self._microseconds = 0
+        collector: Any = gc
+        collector.collect()
+        collector.threshold(collector.mem_free() // GARBAGE)
         self._began = time.time_ns() + epoch_offset()
 
     # -- time

@@ -1,6 +1,7 @@
 """A TCP connection and the machine of the ROS 1 engine that speaks on it."""
 
 import errno
+import gc
 
 from roslet.io.micropython.loop import GONE, READ, WRITE
 
@@ -89,10 +90,16 @@ class Stream:
                 self.flush()
             self.lose("closed by the peer")
             return
-        if into:
-            machine.received(count, now)
-        else:
-            machine.receive_data(memoryview(room)[:count], now)
+        try:
+            if into:
+                machine.received(count, now)
+            else:
+                machine.receive_data(memoryview(room)[:count], now)
+        except MemoryError:
+            self.shell.engine.count("no-memory")
+            self.lose("no memory for what came")
+            gc.collect()
+            return
         self.shell.after(self)
         self.flush()
 

@@ -49,7 +49,7 @@ class Domain:
         self.addresses = found or [sockets.LOOPBACK]
         self._group: Any = None
         self._senders: list[Any] = []
-        if network.range != "LOCALHOST" and network.range != "OFF" and found:
+        if network.range != "LOCALHOST" and network.range != "OFF":
             self._join()
         domain = network.domain_id
         meta_port = locator.metatraffic_unicast_port(domain, self.participant_id)
@@ -113,7 +113,8 @@ class Domain:
             return ()
         if self._group is not None:
             found.append((GROUP, group_port))
-        else:
+        if self._group is None or self.addresses == [sockets.LOOPBACK]:
+            # On a host with nothing but loopback others may not use the group, although we can.
             found += self._ports_of(sockets.LOOPBACK)
         for host, port in network.peers:
             host = sockets.source(sockets.address(host, port or 1))[0]
@@ -139,11 +140,10 @@ class Domain:
                 except OSError:
                     break
                 except MemoryError:
-                    # The heap is in pieces. What the datagram said comes again, or is reported lost.
+                    # The heap is full, or in pieces. What the datagram said comes again, or is reported lost.
                     gc.collect()
-                    sock.recv(16)
                     self._count("no-memory-for-datagram")
-                    continue
+                    break
                 self.participant.receive_datagram(data, sockets.source(raw), self.loop.now())
                 self._tell()
             self.flush()

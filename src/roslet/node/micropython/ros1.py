@@ -43,6 +43,7 @@ class Ros1Network:
         engine.chunk = bounds.CHUNK
         engine.room = bounds.ROOM
         engine.max_body = bounds.CALL
+        engine.lends = True
         engine.on_note = node._note
         engine.on_parameter = self._parameter_changed
         engine.on_shutdown = node._shut_down

@@ -1,0 +1,126 @@
+"""A node on MicroPython with roscpp and rospy, both directions, in a heap of 512 KB: user-defined types, an image of 32 KB,
+services, parameters, the log; and a peer that is killed and back."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from interop import boards
+from interop.ros1 import Master, Peer, Program, Tools, wait_until
+
+HEAP = "512k"
+TURNS = 20 if os.environ.get("ROSLET_LONG") else 3
+
+
+@pytest.fixture(scope="module")
+def master(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Master]:
+    started = Master("debian", tmp_path_factory.mktemp("board-master"))
+    yield started
+    started.stop()
+
+
+@pytest.fixture(scope="module")
+def board(master: Master, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Program]:
+    made = boards.bundle("ros1", tmp_path_factory.mktemp("board-ros1"))
+    environment = {**os.environ, "ROS_MASTER_URI": master.uri, "ROS_IP": "127.0.0.1"}
+    program = Program(boards.command(made, HEAP), environment)
+    program.wait_for("ready")
+    yield program
+    assert program.process.poll() is None, program.errors
+    program.stop()
+
+
+@pytest.fixture(scope="module", params=["roscpp", "rospy"])
+def peer(request: pytest.FixtureRequest, master: Master, board: Program) -> Iterator[Peer]:
+    started = Peer(request.param, master)
+    yield started
+    started.quit()
+
+
+def echoed(peer: Peer, type_name: str, topic: str, size: int, count: int) -> None:
+    """The peer's messages come back whole and in order."""
+    peer.ask(f"advertise {type_name} {topic} 0", f"advertised {topic}")
+    peer.ask(f"subscribe {type_name} {topic}_back {size}", f"subscribed {topic}_back")
+    wait_until(lambda: peer.subscribers(topic) == 1, "the board subscribes")
+    wait_until(lambda: peer.publishers(f"{topic}_back") == 1, "the peer is connected")
+    before = len(peer.told(f"got {topic}_back "))
+    for i in range(count):
+        peer.ask(f"publish {topic} {i} {size}", f"published {topic} {i}")
+        peer.wait_for(f"got {topic}_back ", before + i + 1)
+    lines = peer.told(f"got {topic}_back ")[before:]
+    assert lines == [f"got {topic}_back {i} ok" for i in range(count)]
+    peer.ask(f"unadvertise {topic}", f"unadvertised {topic}")
+    peer.ask(f"unsubscribe {topic}_back", f"unsubscribed {topic}_back")
+
+
+def test_coordinates_come_back(peer: Peer) -> None:
+    echoed(peer, "mros_comm_measure/Coordinate", "/coordinate", 0, 20)
+
+
+@pytest.mark.parametrize("size", [-1, 0, 4096])
+def test_texts_come_back(peer: Peer, size: int) -> None:
+    echoed(peer, "std_msgs/String", "/text", size, 5)
+
+
+def test_an_image_of_32_kb_comes_back(peer: Peer) -> None:
+    echoed(peer, "sensor_msgs/Image", "/image", 32768, 3)
+
+
+def test_the_peer_calls_the_boards_service(peer: Peer) -> None:
+    assert peer.ask("call /scale 5 2.5 0", "called /scale") == "ok"
+    failed = peer.ask("call /scale 5 0 0", "called /scale")
+    assert failed.startswith("failed") and (peer.kind == "roscpp" or "factor is zero" in failed)
+
+
+def test_the_board_calls_the_peers_service(peer: Peer, master: Master, tools: Tools) -> None:
+    service = f"/scale_{peer.kind}"
+    peer.ask(f"serve {service}", f"serving {service}")
+    assert asked(tools, f"call {service}") == "scaled 1 3.0"
+
+
+@pytest.fixture(scope="module")
+def tools(master: Master, tmp_path_factory: pytest.TempPathFactory) -> Tools:
+    return Tools(master, tmp_path_factory.mktemp("board-tools"))
+
+
+def asked(tools: Tools, words: str) -> str:
+    """What the board says to a request."""
+    echo = tools.start("rostopic", "echo", "-n", "1", "-p", "/said")
+    wait_until(lambda: "/rostopic" in tools.run("rostopic", "info", "/said").partition("Subscribers")[2], "heard")
+    tools.run("rostopic", "pub", "-1", "/ask", "std_msgs/String", words)
+    echo.finish()
+    return echo.lines[-1].partition(",")[2]
+
+
+def test_tools_see_parameters_topics_and_the_log(board: Program, tools: Tools) -> None:
+    assert tools.run("rosparam", "get", "/board/mood").strip() == "calm"
+    tools.run("rosparam", "set", "/elsewhere", "7")
+    assert asked(tools, "get /elsewhere") == "7"
+    assert asked(tools, "watch /elsewhere") == "watching"
+    info = tools.run("rosnode", "info", "/board")
+    assert " * /beat [std_msgs/UInt32]" in info and " * /scale" in info
+    log = tools.start("rostopic", "echo", "-n", "1", "-p", "/rosout")
+    wait_until(lambda: "/rostopic" in tools.run("rostopic", "info", "/rosout").partition("Subscribers")[2], "heard")
+    tools.run("rostopic", "pub", "-1", "/ask", "std_msgs/String", "log hot")
+    log.finish()
+    assert "/board" in log.lines[-1] and "hot" in log.lines[-1]
+
+
+def test_a_peer_is_killed_and_back(board: Program, master: Master) -> None:
+    for _ in range(TURNS):
+        mortal = Peer("rospy", master)
+        mortal.ask("advertise mros_comm_measure/Coordinate /coordinate 0", "advertised /coordinate")
+        mortal.ask("subscribe mros_comm_measure/Coordinate /coordinate_back 0", "subscribed /coordinate_back")
+        wait_until(lambda mortal=mortal: mortal.subscribers("/coordinate") == 1, "the board subscribes")  # type: ignore[misc]
+        wait_until(lambda mortal=mortal: mortal.publishers("/coordinate_back") == 1, "connected")  # type: ignore[misc]
+        mortal.say("publish /coordinate 0 0")
+        assert mortal.wait_for("got /coordinate_back ") == ["got /coordinate_back 0 ok"]
+        mortal.process.kill()
+        mortal.process.wait()
+        time.sleep(0.1)
+    assert board.process.poll() is None
