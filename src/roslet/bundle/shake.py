@@ -1,15 +1,23 @@
 """What a program reaches, module by module and name by name; the rest is left out.
 
-A name is live where live code mentions it, whoever's it is: a method is kept when any live code has an attribute of its
-name. That is more than is needed, and never less, as long as names are not made up at run time; those given to `getattr`
-are seen. Importing a module of roslet has no effect but its names, so a module of which no name is live is left out.
+What a module defines is live where live code mentions it. A method or class attribute of a live class is live where live
+code has an attribute of its name, whoever's: more than is needed, and never less, as long as names are not made up at run
+time; those given to `getattr` are seen. Importing a module of roslet has no effect but its names, so a module of which no name is live is left out.
 """
 
 from __future__ import annotations
 
 import ast
 
-from roslet.bundle.source import Function, Inliner, Module, collect_constants, locate, names_in
+from roslet.bundle.source import (
+    Function,
+    Inliner,
+    Module,
+    attributes_in,
+    collect_constants,
+    locate,
+    names_in,
+)
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -21,9 +29,13 @@ Statement = ast.stmt
 class _Definition:
     """A function, class, method or constant that is kept if its name is live, within what `owner` says is live."""
 
-    def __init__(self, node: Statement, scanned: list[ast.AST]) -> None:
+    def __init__(
+        self, node: Statement, scanned: list[ast.AST], module: Module, owner: ast.ClassDef | None
+    ) -> None:
         self.node = node
         self.scanned = scanned
+        self.module = module
+        self.owner = owner
         self.live = False
 
 
@@ -43,7 +55,7 @@ class Shaker:
         folds: Mapping[str, bool] | None = None,
         stubs: Iterable[str] = (),
         roots: Iterable[str] = (),
-        names: Iterable[str] = (),
+        known: dict[str, Module | None] | None = None,
     ) -> None:
         self._texts = texts
         self._excluded = tuple(excluded)
@@ -51,26 +63,30 @@ class Shaker:
         self._bounds = bounds or {}
         self._folds = folds or {}
         self._stubs = frozenset(stubs)
-        self._modules: dict[str, Module | None] = {}
+        self._modules: dict[str, Module | None] = {} if known is None else known
+        for name in texts:
+            self._modules.pop(name, None)
         self._entered: dict[str, Module] = {}
-        self._live: set[str] = set()
-        self._by_name: dict[str, list[_Definition]] = {}
-        self._of: dict[int, _Definition] = {}
-        self._imports: dict[str, list[tuple[Module, str, str]]] = {}  # local name -> (module, imported from, name there)
-        self._waiting: list[ast.AST] = []
+        self._tops: dict[tuple[str, str], _Definition] = {}  # by module and name
+        self._members: dict[str, list[_Definition]] = {}  # of live classes, by name
+        self._members_live: set[str] = set()
+        self._escaped: set[str] = set()
+        self._of: dict[int, _Definition] = {}  # by statement
+        self._alias_tables: dict[str, dict[str, list[tuple[str, str]]]] = {}
+        self._waiting: list[tuple[ast.AST, Module, ast.ClassDef | None]] = []
         program = Module("__main__", entry)
         self._modules["__main__"] = program
         self._prepare(program)
         self._entered["__main__"] = program
         for statement in program.tree.body:
-            self._scan_imports([statement], program)
-        self._waiting.extend(program.tree.body)
-        for name in names:
-            self._reach(name)
+            self._waiting.append((statement, program, None))
         for name in roots:
             root = self.module(name)
             if root is not None:
                 self._enter(root)
+                for (module, _), definition in list(self._tops.items()):
+                    if module == name and name != "roslet":
+                        self._keep(definition)
         self._run()
 
     # -- modules
@@ -177,131 +193,152 @@ class Shaker:
 
     def _run(self) -> None:
         while self._waiting:
-            piece = self._waiting.pop()
+            piece, module, owner = self._waiting.pop()
             for name in names_in([piece]):
-                self._reach(name)
+                self._name(name, module, owner)
+            for base, attribute in attributes_in([piece]):
+                self._attribute(base, attribute, module)
+            for node in self._imports_in(piece):
+                self._import(node)
 
-    def _reach(self, name: str) -> None:
-        if name in self._live:
-            return
-        self._live.add(name)
-        for definition in self._by_name.get(name, ()):
-            self._keep(definition)
-        for _, source, there in self._imports.get(name, ()):
+    def _name(self, name: str, module: Module, owner: ast.ClassDef | None) -> None:
+        """A free name in a module, or in the body of a class."""
+        found = self._tops.get((module.name, name))
+        if found is not None:
+            self._keep(found)
+        if owner is not None and name not in self._members_live:
+            self._member(name)
+        for source, there in self._aliases(module).get(name, ()):
             self._imported(source, there)
+            escaped = self.module(source + "." + there)
+            if escaped is not None and escaped.name not in self._escaped:
+                # A module as an object: what it defines is like the members of a class.
+                self._escaped.add(escaped.name)
+                for (home, member), definition in list(self._tops.items()):
+                    if home == escaped.name:
+                        self._members.setdefault(member, []).append(definition)
+                        if member in self._members_live:
+                            self._keep(definition)
+
+    def _attribute(self, base: str, attribute: str, module: Module) -> None:
+        """`base.attribute`, where `base` is the name of a module, else "" and anything may have the attribute."""
+        sources = self._aliases(module).get(base, ()) if base else ()
+        modules = [source + "." + there if there else source for source, there in sources]
+        modules = [one for one in modules if self.module(one) is not None]
+        if not modules:
+            self._member(attribute)
+            if base:
+                self._name(base, module, None)
+        for one in modules:
+            self._imported(one, attribute)
+
+    def _member(self, name: str) -> None:
+        if name not in self._members_live:
+            self._members_live.add(name)
+            for definition in self._members.get(name, ()):
+                self._keep(definition)
 
     def _keep(self, definition: _Definition) -> None:
         if not definition.live:
             definition.live = True
-            self._waiting.extend(definition.scanned)
             for piece in definition.scanned:
-                self._scan_imports([piece], None)
+                self._waiting.append((piece, definition.module, definition.owner))
             if isinstance(definition.node, ast.ClassDef):
-                self._enter_class(definition.node)
+                for statement in definition.node.body:
+                    self._define_member(statement, definition.module, definition.node)
+
+    def _aliases(self, module: Module) -> dict[str, list[tuple[str, str]]]:
+        """What imports of a module, wherever they are, call by which name: (module, name in it), or (module, "")."""
+        found = self._alias_tables.get(module.name)
+        if found is None:
+            found = self._alias_tables[module.name] = {}
+            for node in ast.walk(module.tree):
+                if isinstance(node, ast.ImportFrom) and node.module:
+                    for alias in node.names:
+                        found.setdefault(alias.asname or alias.name, []).append((node.module, alias.name))
+                elif isinstance(node, ast.Import):
+                    for alias in node.names:
+                        found.setdefault(alias.asname or alias.name.partition(".")[0], []).append((alias.name, ""))
+        return found
+
+    def _import(self, node: ast.Import | ast.ImportFrom) -> None:
+        """One that is always done when its statement is reached: the module is entered, what is named is looked at when it
+        is used."""
+        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else [node.module or ""]
+        for name in names:
+            found = self.module(name)
+            if found is not None:
+                self._enter(found)
 
     def _imported(self, source: str, name: str) -> None:
-        submodule = self.module(source + "." + name)
+        submodule = self.module(source + "." + name) if name else self.module(source)
         if submodule is not None:
             self._enter(submodule)
             return
         module = self.module(source)
         if module is not None:
             self._enter(module)
-            self._reach(name)
+            found = self._tops.get((module.name, name))
+            if found is not None:
+                self._keep(found)
+            else:
+                for there, other in self._aliases(module).get(name, ()):
+                    self._imported(there, other)
 
     def _enter(self, module: Module) -> None:
         if module.name in self._entered:
             return
         self._entered[module.name] = module
-        parent = module.name.rpartition(".")[0]
-        if parent:
-            above = self.module(parent)
-            if above is not None:
-                self._enter(above)
         for statement in module.tree.body:
-            self._define(statement, module)
+            name = _defined(statement)
+            if name is not None:
+                self._tops[module.name, name] = self._definition(statement, module, None)
+            elif not isinstance(statement, ast.ImportFrom | ast.Import):
+                self._waiting.append((statement, module, None))
 
-    def _define(self, statement: Statement, module: Module | None) -> None:
-        name = _defined(statement)
-        if name is not None:
-            self._add(name, statement)
-        elif isinstance(statement, ast.ImportFrom | ast.Import):
-            self._scan_imports([statement], module)
-        else:
-            self._scan_imports([statement], None)
-            self._waiting.append(statement)
-
-    def _add(self, name: str, statement: Statement) -> None:
+    def _definition(self, statement: Statement, module: Module, owner: ast.ClassDef | None) -> _Definition:
         scanned: list[ast.AST] = [statement]
         if isinstance(statement, ast.ClassDef):
             scanned = [*statement.bases, *statement.decorator_list]
-        definition = _Definition(statement, scanned)
-        self._of[id(statement)] = definition
-        self._by_name.setdefault(name, []).append(definition)
-        if name in self._live or (name.startswith("__") and name not in ("__repr__", "__str__")):
+        definition = self._of[id(statement)] = _Definition(statement, scanned, module, owner)
+        return definition
+
+    def _define_member(self, statement: Statement, module: Module, owner: ast.ClassDef) -> None:
+        name = _defined(statement)
+        if name is None:
+            self._waiting.append((statement, module, owner))
+            return
+        definition = self._definition(statement, module, owner)
+        self._members.setdefault(name, []).append(definition)
+        if name in self._members_live or name.startswith("__"):
             self._keep(definition)
 
-    def _enter_class(self, node: ast.ClassDef) -> None:
-        for statement in node.body:
-            self._define(statement, None)
-
-    def _scan_imports(self, pieces: Iterable[ast.AST], module: Module | None) -> None:
-        """Imports that are always done (`module` None, or the program), or where their names are live."""
-        for piece in pieces:
-            for node in ast.walk(piece):
-                if isinstance(node, ast.Import):
-                    for alias in node.names:
-                        found = self.module(alias.name)
-                        if found is not None:
-                            self._enter(found)
-                elif isinstance(node, ast.ImportFrom) and node.module:
-                    for alias in node.names:
-                        here = alias.asname or alias.name
-                        if module is None or module.name == "__main__" or here in self._live:
-                            self._imported(node.module, alias.name)
-                        else:
-                            self._imports.setdefault(here, []).append((module, node.module, alias.name))
+    def _imports_in(self, piece: ast.AST) -> list[ast.Import | ast.ImportFrom]:
+        return [one for one in ast.walk(piece) if isinstance(one, ast.Import | ast.ImportFrom)]
 
     # -- the result
 
+    def reaches(self, module: str) -> bool:
+        """Whether a module is needed."""
+        return module in self._entered
+
     @property
-    def modules(self) -> list[str]:
-        """The modules that are needed, without the program."""
-        return sorted(name for name in self._entered if name != "__main__")
+    def program(self) -> ast.Module:
+        """The program's tree."""
+        return self._entered["__main__"].tree
 
-    def is_package(self, name: str) -> bool:
-        """Whether it is a package's `__init__`."""
-        return self._entered[name].package
-
-    def reaches(self, name: str) -> bool:
-        """Whether live code mentions a name."""
-        return name in self._live
-
-    def text(self, name: str) -> str:
-        """What is left of a module's text."""
-        module = self._entered[name]
-        if name == "__main__":
-            return ast.unparse(module.tree) + "\n"
-        body = module.tree.body
-        if module.package and name != "roslet" and name not in self._texts:
-            # Whoever wants what a package has from its modules was led there.
-            body = [one for one in body if not isinstance(one, ast.ImportFrom)]
-        body = self._filtered(body)
-        return ast.unparse(ast.Module(body, [])) + "\n" if body else ""
+    def trees(self) -> dict[str, ast.Module]:
+        """What is left of each module that is needed."""
+        found = {}
+        for name, module in sorted(self._entered.items()):
+            if name == "__main__":
+                continue
+            found[name] = ast.Module(self._filtered(module.tree.body), [])
+        return found
 
     def _filtered(self, body: list[Statement]) -> list[Statement]:
         found: list[Statement] = []
         for statement in body:
-            if isinstance(statement, ast.ImportFrom | ast.Import):
-                kept = [alias for alias in statement.names if self._wanted(statement, alias)]
-                if kept:
-                    made: Statement = (
-                        ast.Import(kept)
-                        if isinstance(statement, ast.Import)
-                        else ast.ImportFrom(statement.module, kept, 0)
-                    )
-                    found.append(made)
-                continue
             definition = self._of.get(id(statement))
             if definition is not None and not definition.live:
                 continue
@@ -309,38 +346,6 @@ class Shaker:
                 statement.body = self._filtered(statement.body) or [ast.Pass()]
             found.append(statement)
         return found
-
-    def _wanted(self, statement: ast.ImportFrom | ast.Import, alias: ast.alias) -> bool:
-        here = (alias.asname or alias.name).partition(".")[0]
-        if here not in self._live:
-            return False
-        if isinstance(statement, ast.Import) or not (statement.module or "").startswith("roslet"):
-            return True
-        source = statement.module or ""
-        if source + "." + alias.name in self._entered:
-            return True
-        home = self._entered.get(source)
-        return home is not None and (
-            home.name in self._texts or any(_defined(one) == alias.name and self._is_live(one) for one in _flat(home.tree.body))
-        )
-
-    def _is_live(self, statement: Statement) -> bool:
-        definition = self._of.get(id(statement))
-        return definition is None or definition.live
-
-
-def _flat(body: list[Statement]) -> list[Statement]:
-    found = []
-    for one in body:
-        found.append(one)
-        if isinstance(one, ast.If):
-            found += _flat(one.body) + _flat(one.orelse)
-        elif isinstance(one, ast.Try):
-            found += _flat(one.body)
-            for handler in one.handlers:
-                found += _flat(handler.body)
-    return found
-
 
 def _defined(statement: Statement) -> str | None:
     """The name that a statement defines and does nothing else."""

@@ -185,7 +185,7 @@ class Inliner(ast.NodeTransformer):
         return node
 
 
-_Scope = (*Function, ast.Lambda, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
+Scope = (*Function, ast.Lambda, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 
 def bound_names(scope: ast.AST) -> set[str]:
@@ -208,29 +208,45 @@ def bound_names(scope: ast.AST) -> set[str]:
         elif isinstance(node, ast.ImportFrom | ast.Import):
             # What is imported is looked for by its name elsewhere.
             continue
-        if not isinstance(node, _Scope):
+        if not isinstance(node, Scope):
             pieces.extend(ast.iter_child_nodes(node))
     return found - released
 
 
 def names_in(nodes: Iterable[ast.AST]) -> set[str]:
-    """The names that a piece of code may reach: attributes, names that are not its own, and what `getattr` and its like are
-    given."""
+    """The names that a piece of code has from outside of it."""
     found: set[str] = set()
     for node in nodes:
-        _names(node, frozenset(), found)
+        _names(node, frozenset(), found, set())
     return found
 
 
-def _names(node: ast.AST, own: frozenset[str], found: set[str]) -> None:
-    if isinstance(node, _Scope):
+def attributes_in(nodes: Iterable[ast.AST]) -> set[tuple[str, str]]:
+    """(name, attribute) for each attribute of what has a name from outside; ("", attribute) for all others, and for what
+    `getattr` and its like are given."""
+    found: set[tuple[str, str]] = set()
+    for node in nodes:
+        _names(node, frozenset(), set(), found)
+    return found
+
+
+def _names(node: ast.AST, own: frozenset[str], names: set[str], attributes: set[tuple[str, str]]) -> None:
+    if isinstance(node, Scope):
         own |= bound_names(node)
     if isinstance(node, ast.Name):
         if node.id not in own:
-            found.add(node.id)
+            names.add(node.id)
     elif isinstance(node, ast.Attribute):
-        found.add(node.attr)
-    elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("getattr", "hasattr", "setattr"):
-        found.update(one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str))
+        base = node.value.id if isinstance(node.value, ast.Name) and node.value.id not in own else ""
+        attributes.add((base, node.attr))
+        if base:
+            return  # of a module only the attribute counts; of anything else the name does as well
+    elif (
+        isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Name)
+        and node.func.id in ("getattr", "hasattr", "setattr")
+    ):
+        given = [one.value for one in node.args if isinstance(one, ast.Constant)]
+        attributes |= {("", one) for one in given if isinstance(one, str)}
     for child in ast.iter_child_nodes(node):
-        _names(child, own, found)
+        _names(child, own, names, attributes)

@@ -75,11 +75,6 @@ class Types:
             self._collect(registry.interface(name), False)
 
     @property
-    def names(self) -> list[str]:
-        """Of the classes."""
-        return sorted({one.name.name for one in self._interfaces.values()} | {"Request", "Response"})
-
-    @property
     def messages(self) -> list[Message]:
         """Those that have a size."""
         return [one for one in self._interfaces.values() if isinstance(one, Message)]
@@ -105,23 +100,25 @@ class Types:
 
     def texts(self) -> dict[str, str]:
         """Module -> text."""
-        base = "roslet.msgs"
-        found = {base: "DIALECT = %r\n" % self.dialect, "%s.%s" % (base, self.dialect): ""}
-        kinds: dict[str, list[str]] = {}
+        found: dict[str, str] = {}
+        table = []
+        imports = []
         for key, interface in self._interfaces.items():
             name = interface.name
-            package = "%s.%s.%s" % (base, self.dialect, name.package)
-            found[package] = ""
-            module = "%s.%s._%s" % (package, name.kind, name.name)
             if not isinstance(interface, Message):
-                found[module] = self._service(interface)
+                found[self._module(name)] = self._service(interface)
             elif key in self._fast:
-                found[module] = _short(interface_module(self._registry, interface))
+                found[self._module(name)] = _short(interface_module(self._registry, interface))
             else:
-                found[module] = self._compact(interface)
-            kinds.setdefault("%s.%s" % (package, name.kind), []).append(name.name)
-        for kind, names in kinds.items():
-            found[kind] = "".join("from %s._%s import %s\n" % (kind, name, name) for name in sorted(names))
+                found[self._module(name)] = self._compact(interface)
+            line = "from %s import %s" % (self._module(name), name.name)
+            here = "T%d" % len(table)
+            imports.append("%s as %s" % (line, here))
+            table.append('"%s/%s/%s": %s' % (name.package, name.kind, name.name, here))
+            # Programs may import a class from where CPython has it.
+            kind = "roslet.msgs.%s.%s.%s" % (self.dialect, name.package, name.kind)
+            found[kind] = found.get(kind, "") + line + "\n"
+        found["roslet.msgs"] = "\n".join(imports) + "\nTYPES = {%s}\n" % ", ".join(table)
         return found
 
     def _module(self, name: TypeName) -> str:

@@ -27,8 +27,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         run_bundle,
         "put a program and what it needs into a folder for a board",
         "roslet micropython bundle blink.py --output build\n"
-        "roslet micropython bundle echo.py --network ros1 --definitions my_msgs --bound MAX_MESSAGE=4096 --output build",
-        "json",
+        "roslet micropython bundle echo.py --network ros1 --types my_msgs --bound MAX_MESSAGE=4096 --output build",
+        "types json",
     )
     bundle.description = (
         "Put a program and what it needs of roslet into a folder for a board: the modules that it reaches, of them what it\n"
@@ -43,19 +43,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="which network the node is on (default: what network= says in the program, or ros2)",
     )
     bundle.add_argument(
-        "--types",
-        nargs="+",
-        action="extend",
-        default=[],
-        metavar="NAME",
-        help="types besides those that the program names, such as std_msgs/msg/String",
-    )
-    bundle.add_argument(
-        "--definitions",
+        "--type",
         action="append",
         default=[],
-        metavar="PATH",
-        help="a package or folder with definitions of your own; may be given several times",
+        metavar="NAME",
+        help="a type besides those that the program names, such as std_msgs/msg/String; may be repeated",
     )
     bundle.add_argument(
         "--bound",
@@ -98,8 +90,8 @@ def run_bundle(arguments: argparse.Namespace) -> int:
             program,
             Path(arguments.output),
             arguments.network or _network(text),
-            wanted=arguments.types,
-            definitions=[Path(one) for one in arguments.definitions],
+            wanted=arguments.type,
+            definitions=[Path(one) for one in arguments.types],
             rosout=not arguments.no_rosout,
             bounds=_bounds(arguments.bound),
             compiled=not arguments.source,
@@ -139,6 +131,7 @@ def _report(made: Bundle) -> dict[str, Any]:
         "network": made.dialect,
         "compiled": made.compiled,
         "bytes": made.total,
+        "files": made.files,
         "image": None if made.image is None else made.image.stat().st_size,
         "modules": made.sizes,
         "types": made.types,
@@ -149,8 +142,11 @@ def _report(made: Bundle) -> dict[str, Any]:
 def _print(made: Bundle) -> None:
     what = ".mpy" if made.compiled else "source"
     width = max(map(len, [*made.sizes, *made.types]))
-    print(f"{what} bytes by module")
+    print(f"{what} bytes by module, each by itself")
     for name, size in made.sizes.items():
+        print(f"  {name:{width}} {size:7}")
+    print("\nlinked, with each name stored once")
+    for name, size in made.files.items():
         print(f"  {name:{width}} {size:7}")
     print(f"  {'total':{width}} {made.total:7}")
     if made.image is not None:

@@ -7,9 +7,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-PACKAGE = "roslet.msgs."
-
-
 class Compact(Message):
     """The base of a class without code of its own: it is written and read by its field table, which is smaller and slower."""
 
@@ -28,14 +25,14 @@ def find(dialect: str, name: "Any", kind: str = "msg") -> "Any":
         if (encoding == "ros1") == (dialect == "ros1"):
             return name
         name = name._type
-    parts = name.split("/")
-    if len(parts) == 2:
-        parts.insert(1, kind)
-    module = PACKAGE + dialect + "." + parts[0] + "." + parts[1]
-    try:
-        return getattr(__import__(module, None, None, (parts[2],)), parts[2])
-    except (ImportError, AttributeError):
-        raise UnknownType("%s is not in this bundle; name it with --types" % name) from None
+    if name.count("/") == 1:
+        name = name.replace("/", "/" + kind + "/")
+    from roslet.msgs import TYPES  # type: ignore[attr-defined]  # a bundle's
+
+    found = TYPES.get(name)
+    if found is None:
+        raise UnknownType("%s is not in this bundle; name it with --type" % name)
+    return found
 
 
 def message_class(dialect: str, name: "Any") -> "Any":
@@ -51,20 +48,17 @@ def service_class(dialect: str, name: "Any") -> "Any":
 class Types:
     """What `roslet.load` returns: packages as attributes. The definitions were read when the bundle was made."""
 
-    def __init__(self, path: str) -> None:
+    def __init__(self, path: str = "") -> None:
         self._path = path
 
     def __getattr__(self, name: str) -> "Any":
-        if name in ("msg", "srv"):
-            return __import__(self._path + "." + name, None, None, (name,))
-        return Types(self._path + "." + name)
+        path = self._path + name
+        return find("", path) if path.count("/") == 2 else Types(path + "/")
 
 
 def load(path: "Any", dialect: "str | None" = None) -> Types:
-    """Classes of the bundle; `path` is not looked at."""
-    from roslet.msgs import DIALECT  # type: ignore[attr-defined]  # a bundle's
-
-    return Types(PACKAGE + (dialect or DIALECT))
+    """Classes of the bundle; `path` and `dialect` are not looked at."""
+    return Types()
 
 
 def converted(kind: "Any", value: "Any", where: str) -> "Any":
