@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 BOUNDS = "roslet.node.micropython.bounds"
 _REPLACED = {
     "roslet.gen.runtime": "roslet.node.micropython.types",
+    "roslet.engine.ros2.graph": "roslet.node.micropython.nograph",
     "roslet.node.future": "roslet.node.micropython.endpoints",
 }
 # Where a board finds the public names.
@@ -58,6 +59,7 @@ _STUBS = (
     "roslet.engine.ros1.engine:udp_receiver",
     "roslet.engine.ros1.slave:_request_udp",
     "roslet.engine.ros1.slave:_udp_parameters",
+    "roslet.engine.ros2.context:_sample",  # the context of a board does not listen
 )
 _FOLDS = {"CPYTHON": False}
 _PARAMETER_SERVICES = (

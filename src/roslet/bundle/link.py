@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import builtins
 
+from roslet.bundle.short import shorten
 from roslet.bundle.source import Scope, bound_names
 
 TYPE_CHECKING = False
@@ -48,6 +49,7 @@ class Linker:
             if body:
                 self.pieces[name] = ast.fix_missing_locations(ast.Module(body, []))
         self.program = self._rewritten(program)
+        shorten(list(self.pieces.values()), program)
 
     def text(self) -> str:
         """The one module."""

@@ -8,6 +8,7 @@ from roslet.engine.ros2.context import Context
 from roslet.engine.rtps.participant import Participant
 from roslet.errors import Unreachable
 from roslet.io.micropython import sockets
+from roslet.wire.discovery_info import TOPIC
 from roslet.wire.rtps import locator
 from roslet.wire.rtps.guid import VENDORID_ROSLET
 
@@ -24,6 +25,7 @@ GROUP = "239.255.0.1"
 # Participants of one host that are sought where the group is not used, or a peer is given without a port.
 UNICAST_IDS = 8
 MAX_PARTICIPANT_ID = 119
+_WRITES, _READS = 1, 2
 # Datagrams read in one go before others get their turn.
 BATCH = 8
 
@@ -41,6 +43,7 @@ class Domain:
         self._datagram = datagram
         self._handlers: dict[bytes, Callable[[Any], None]] = {}
         self._closed = False
+        self._relearn = False
         # What leaves in parts is put together here: MicroPython gathers nothing.
         self._out = bytearray(fragment + 512)
         self._meta, self._user, self.participant_id = self._bind()
@@ -70,12 +73,16 @@ class Domain:
             limits=limits,
             multicast=(locator.udp4(GROUP, group_port),) if self._group is not None else (),
         )
-        self.context = Context(self.participant)
+        self.context = Context(self.participant, listens=False)
+        self._topics: dict[str, int] = {}  # ours, and what of them; others' endpoints are kept if they may match
+        self._dropped = False  # whether there was any of those
+        self.participant.keep_only(self._is_ours)
         for sock in (self._meta, self._user, self._group):
             if sock is not None:
                 loop.register(sock, self._reader_of(sock))
         now = loop.now()
         self.participant.start(now)
+        self.expect(TOPIC, True)
         self.context.start(now)
         loop.timed.append(self)
         self.flush()
@@ -150,6 +157,26 @@ class Domain:
 
         return readable
 
+    def _is_ours(self, found: "Any") -> bool:
+        if not self._topics.get(found.topic, 0) & (_READS if found.writer else _WRITES):
+            self._dropped = True
+            return False
+        # Peers are often alike: what they say alike is kept once.
+        for known in self.participant.endpoints.values():
+            if known.topic == found.topic and known.qos == found.qos:
+                found.topic, found.type_name, found.qos = known.topic, known.type_name, known.qos
+                break
+        return True
+
+    def expect(self, topic: str, writes: bool) -> None:
+        """An endpoint of this topic is about to be made, a writer or a reader. To be made before the node is first served, or
+        peers have to say again what they have."""
+        known = self._topics.get(topic, 0)
+        bit = _WRITES if writes else _READS
+        if not known & bit:
+            self._topics[topic] = known | bit
+            self._relearn = self._relearn or self._dropped
+
     def handle(self, entity_id: bytes, handler: "Callable[[Any], None] | None") -> None:
         """Who gets the events of an endpoint of ours; None: nobody any more."""
         if handler is None:
@@ -172,6 +199,9 @@ class Domain:
         if self._closed:
             return
         now = self.loop.now()
+        if self._relearn:
+            self._relearn = self._dropped = False
+            self.participant.spdp.relearn(now)
         for parts, addresses in self.participant.datagrams_to_send(now):
             self._send(parts, addresses)
         if self.participant.pending_events:

@@ -7,7 +7,7 @@ from roslet.engine.rtps.limits import Limits
 from roslet.errors import NodeClosed, RosletError, UnknownType
 from roslet.io.micropython.udp import Domain
 from roslet.names.networks import parse_ros2_network
-from roslet.names.ros2 import TOPIC, check_namespace, check_node_name, dds_topic, dds_type, expand
+from roslet.names.ros2 import REPLY, REQUEST, TOPIC, check_namespace, check_node_name, dds_topic, dds_type, expand
 from roslet.node.micropython import bounds, endpoints
 from roslet.node.micropython.endpoints import Future
 from roslet.node.micropython.node import environment
@@ -157,9 +157,11 @@ class Publisher(endpoints.Publisher):
     def __init__(self, network: Ros2Network, topic: str, kind: "Any", qos: QoS) -> None:
         endpoints.Publisher.__init__(self, network.node, topic, kind, qos)
         self._network = network
+        dds = dds_topic(TOPIC, topic)
+        network.domain.expect(dds, True)
         self._writer = network.context.create_writer(
             network.handle,
-            dds_topic(TOPIC, topic),
+            dds,
             dds_type(kind._type),
             to_dds(qos),
             kind._type_hash,
@@ -213,9 +215,11 @@ class Subscription(endpoints.Subscription):
         endpoints.Subscription.__init__(self, network.node, topic, kind, callback, qos)
         self._network = network
         self._most = max_message
+        dds = dds_topic(TOPIC, topic)
+        network.domain.expect(dds, False)
         self._reader = network.context.create_reader(
             network.handle,
-            dds_topic(TOPIC, topic),
+            dds,
             dds_type(kind._type),
             to_dds(qos),
             kind._type_hash,
@@ -261,6 +265,8 @@ class Service(endpoints.Service):
         endpoints.Service.__init__(self, network.node, name, kind, handler)
         self._network = network
         self.background = False
+        network.domain.expect(dds_topic(REQUEST, name), False)
+        network.domain.expect(dds_topic(REPLY, name), True)
         self._server: ServiceServer | None = ServiceServer(
             network.context,
             network.handle,
@@ -312,6 +318,8 @@ class Client(endpoints.Client):
         self._network = network
         self._waiting: list[tuple[bytes, Future]] = []
         self._calls: dict[int, Future] = {}
+        network.domain.expect(dds_topic(REPLY, name), False)
+        network.domain.expect(dds_topic(REQUEST, name), True)
         self._client = ServiceClient(
             network.context,
             network.handle,
