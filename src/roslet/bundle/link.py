@@ -11,6 +11,7 @@ import builtins
 
 from roslet.bundle.short import shorten
 from roslet.bundle.source import Scope, bound_names
+from roslet.bundle.trim import trim
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ class Linker:
             if body:
                 self.pieces[name] = ast.fix_missing_locations(ast.Module(body, []))
         self.program = self._rewritten(program)
+        trim([self.pieces[name] for name in self.order if name in self.pieces], program)
         shorten(list(self.pieces.values()), program)
 
     def text(self) -> str:
