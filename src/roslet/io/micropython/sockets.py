@@ -22,8 +22,11 @@ FIRST_PORT, LAST_PORT = 20000, 32767
 TRIES = 100
 # Addresses that are remembered in the port's form.
 MAX_KNOWN = 64
+# Bytes that nearly every datagram has less of.
+USUAL = 1536
 LOOPBACK = "127.0.0.1"
 
+_peek: int = getattr(_socket, "MSG_PEEK", 0)
 _known: "dict[tuple[str, int], Any]" = {}
 _sources: "dict[bytes, tuple[str, int]]" = {}
 
@@ -124,6 +127,19 @@ def datagrams(port: int, shared: bool = False) -> "Any":
         sock.close()
         raise
     return sock
+
+
+def receive(sock: "Any", most: int) -> "tuple[bytes, Any]":
+    """A datagram, of which the rest beyond `most` is lost, and where it came from. Raises OSError, MemoryError.
+
+    MicroPython allots room for the longest before it looks. Where it can look first, the room is that of most datagrams.
+    """
+    if _peek and most > USUAL:
+        data, raw = sock.recvfrom(USUAL, _peek)
+        if len(data) < USUAL:
+            sock.recv(1)  # the rest of it goes as well
+            return data, raw
+    return sock.recvfrom(most)  # type: ignore[no-any-return]
 
 
 def join(sock: "Any", group: str, interface: str) -> bool:

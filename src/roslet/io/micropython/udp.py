@@ -143,7 +143,7 @@ class Domain:
                 if self._closed:
                     return
                 try:
-                    data, raw = sock.recvfrom(self._datagram)
+                    data, raw = sockets.receive(sock, self._datagram)
                 except OSError:
                     break
                 except MemoryError:
