@@ -51,7 +51,8 @@ class Linker:
                 self.pieces[name] = ast.fix_missing_locations(ast.Module(body, []))
         self.program = self._rewritten(program)
         trim([self.pieces[name] for name in self.order if name in self.pieces], program)
-        shorten(list(self.pieces.values()), program)
+        kept = {*public, *self._outer.values()}
+        self._members, self._short = shorten([self.pieces[name] for name in self.order if name in self.pieces], program, kept)
 
     def text(self) -> str:
         """The one module."""
@@ -143,7 +144,9 @@ class Linker:
 
     def _space(self, module: str) -> str:
         lines = ["class %s:" % _space_name(module)]
-        lines += ["    %s = %s" % (name, self._globals[module][name]) for name in self._tops[module]]
+        for name in self._tops[module]:
+            here = self._globals[module][name]
+            lines.append("    %s = %s" % (self._members.get(name, name), self._short.get(here, here)))
         return "\n".join(lines)
 
     def _outside_of(self, module: str, name: str) -> str | None:
