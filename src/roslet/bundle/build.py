@@ -61,6 +61,10 @@ _STUBS = (
     "roslet.engine.ros1.slave:_udp_parameters",
     "roslet.engine.ros2.context:_sample",  # the context of a board does not listen
 )
+_ARITHMETIC = (
+    "__abs__ __add__ __bool__ __divmod__ __floordiv__ __ge__ __gt__ __hash__ __le__ __lt__ __mod__ __mul__ __neg__ __radd__ __rmul__ __sub__ "
+    "__truediv__"
+).split()
 _FOLDS = {"CPYTHON": False}
 _PARAMETER_SERVICES = (
     "DescribeParameters",
@@ -112,11 +116,14 @@ def build(
     definitions: Sequence[Path] = (),
     rosout: bool = True,
     bounds: Mapping[str, int] | None = None,
+    exact: bool = False,
     compiled: bool = True,
 ) -> Bundle:
     """Make the bundle of `program` in `output`: `lib/roslet` and `lib/main`, and `romfs.img` of both.
 
-    `wanted` are types besides those that the program names, `definitions` folders for `roslet.load`. Raises DefinitionError,
+    `wanted` are types besides those that the program names, `definitions` folders for `roslet.load`. With `exact`
+    errors say which field of a message is wrong, and big-endian CDR is read; a ROS 2 program with parameters has that in any
+    case. Raises DefinitionError,
     UnknownType, ValueError for a bound that there is not, Unreachable where there is no mpy-cross.
     """
     from roslet.gen import runtime
@@ -134,13 +141,15 @@ def build(
     registry = runtime.registry(dialect)
     text = program.read_text(encoding="utf-8")
     fast = dict.fromkeys([*wanted, *types.mentioned(text, registry)])
-    compact = [_ROSOUT[dialect]] if rosout else []
+    log = [_ROSOUT[dialect]] if rosout else []
+    compact: list[str] = []
     known: dict[str, Module | None] = {}
-    shaker = _shake(text, types.Types(dialect, registry, fast, compact), chosen, known)
+    shaker = _shake(text, types.Types(dialect, registry, fast, compact, exact, log), chosen, known)
     if shaker.reaches("roslet.node.micropython.parameters"):
         compact += ["rcl_interfaces/srv/" + name for name in _PARAMETER_SERVICES]
         compact.append("rcl_interfaces/msg/ParameterEvent")
-    made = types.Types(dialect, registry, fast, compact)
+        exact = True  # the codec is there in any case
+    made = types.Types(dialect, registry, fast, compact, exact, log)
     shaker = _shake(text, made, chosen, known)
     bundle = Bundle(output, dialect, chosen, compiler is not None)
     for message in made.messages:
@@ -158,6 +167,11 @@ def _public() -> dict[str, str]:
     return homes
 
 
+def _calculates(text: str) -> bool:
+    """Whether a program adds or compares anything; times, perhaps."""
+    return any(isinstance(node, ast.BinOp | ast.AugAssign | ast.Compare) for node in ast.walk(ast.parse(text)))
+
+
 def _shake(
     text: str, made: types.Types, bounds: Mapping[str, int], known: dict[str, Module | None]
 ) -> Shaker:
@@ -173,6 +187,7 @@ def _shake(
         bounds={BOUNDS: bounds},
         folds=_FOLDS,
         stubs=_STUBS,
+        dropped=[] if _calculates(text) else ["roslet.wire.time:" + name for name in _ARITHMETIC],
         roots=["roslet", *[name for name in texts if "._" in name]],
         known=known,
     )

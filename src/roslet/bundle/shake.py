@@ -54,6 +54,7 @@ class Shaker:
         bounds: Mapping[str, Mapping[str, int]] | None = None,
         folds: Mapping[str, bool] | None = None,
         stubs: Iterable[str] = (),
+        dropped: Iterable[str] = (),
         roots: Iterable[str] = (),
         known: dict[str, Module | None] | None = None,
     ) -> None:
@@ -63,6 +64,7 @@ class Shaker:
         self._bounds = bounds or {}
         self._folds = folds or {}
         self._stubs = frozenset(stubs)
+        self._dropped = frozenset(dropped)
         self._modules: dict[str, Module | None] = {} if known is None else known
         for name in texts:
             self._modules.pop(name, None)
@@ -309,6 +311,8 @@ class Shaker:
             self._waiting.append((statement, module, owner))
             return
         definition = self._definition(statement, module, owner)
+        if module.name + ":" + name in self._dropped:
+            return
         self._members.setdefault(name, []).append(definition)
         if name in self._members_live or name.startswith("__"):
             self._keep(definition)

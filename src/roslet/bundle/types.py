@@ -60,17 +60,31 @@ def _known(name: str, registry: Registry) -> list[str]:
 
 
 class Types:
-    """Modules of the classes of `fast` types and `compact` ones and of all they are made of, under `roslet.msgs`."""
+    """Modules of the classes of `fast` types and `compact` ones and of all they are made of, under `roslet.msgs`. With `exact`
+    fast ones fall back on the codec that compact ones have as well: without any of those, it need not be there. What is only
+    `sent` has no code to be received."""
 
     def __init__(
-        self, dialect: Literal["ros1", "ros2"], registry: Registry, fast: Iterable[str], compact: Iterable[str]
+        self,
+        dialect: Literal["ros1", "ros2"],
+        registry: Registry,
+        fast: Iterable[str],
+        compact: Iterable[str],
+        exact: bool,
+        sent: Iterable[str] = (),
     ) -> None:
         self.dialect = dialect
+        self._exact = exact
+        self._sent: set[str] = set()
         self._registry = registry
         self._interfaces: dict[str, Interface] = {}
         self._fast: set[str] = set()
         for name in fast:
             self._collect(registry.interface(name), True)
+        known = set(self._interfaces)
+        for name in sent:
+            self._collect(registry.interface(name), not exact)
+        self._sent = set(self._interfaces) - known
         for name in compact:
             self._collect(registry.interface(name), False)
 
@@ -93,7 +107,7 @@ class Types:
                 self._fast.add(key)
             for field in interface.fields:
                 if field.type.message is not None:
-                    self._collect(self._registry.message(field.type.message), False)
+                    self._collect(self._registry.message(field.type.message), not self._exact)
             return
         for attribute in ("Request", "Response"):
             self._collect(self._registry.message(python.parts(interface)[attribute]), fast)
@@ -108,7 +122,7 @@ class Types:
             if not isinstance(interface, Message):
                 found[self._module(name)] = self._service(interface)
             elif key in self._fast:
-                found[self._module(name)] = _short(interface_module(self._registry, interface))
+                found[self._module(name)] = _short(interface_module(self._registry, interface), self._exact, key in self._sent)
             else:
                 found[self._module(name)] = self._compact(interface)
             line = "from %s import %s" % (self._module(name), name.name)
@@ -192,11 +206,20 @@ def without_comments(definition: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _short(module: str) -> str:
-    """A generated module whose definition text is without comments."""
+def _short(module: str, exact: bool, sent: bool) -> str:
+    """A generated module whose definition text is without comments, and which falls back on less unless `exact`."""
     tree = ast.parse(module)
-    for node in ast.walk(tree):
+    for node in list(ast.walk(tree)):
+        if not exact and isinstance(node, ast.ImportFrom) and node.module == "roslet.wire.message":
+            rescue = [alias for alias in node.names if alias.name.startswith("rescue_")]
+            node.names = [alias for alias in node.names if alias not in rescue]
+            tree.body.insert(0, ast.ImportFrom("roslet.node.micropython.lean", rescue, 0))
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and node.targets[0].id == "_full_text":
             assert isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
             node.value.value = without_comments(node.value.value)
+    if sent:
+        tree.body = [one for one in tree.body if not (isinstance(one, ast.FunctionDef) and one.name == "_read")]
+        for node in tree.body:
+            if isinstance(node, ast.ClassDef):
+                node.body = [one for one in node.body if not (isinstance(one, ast.Assign) and len(one.targets) == 2)]
     return ast.unparse(tree)

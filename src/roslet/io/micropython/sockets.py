@@ -132,13 +132,24 @@ def datagrams(port: int, shared: bool = False) -> "Any":
 def receive(sock: "Any", most: int) -> "tuple[bytes, Any]":
     """A datagram, of which the rest beyond `most` is lost, and where it came from. Raises OSError, MemoryError.
 
-    MicroPython allots room for the longest before it looks. Where it can look first, the room is that of most datagrams.
+    MicroPython allots room for the longest before it looks. Where it can look first, the room is that of most datagrams, and of
+    one for which there is no memory the beginning is taken: it has whole submessages, and the rest will be asked for again.
     """
-    if _peek and most > USUAL:
-        data, raw = sock.recvfrom(USUAL, _peek)
-        if len(data) < USUAL:
-            sock.recv(1)  # the rest of it goes as well
-            return data, raw
+    room = USUAL
+    found = None
+    while _peek and room < most:
+        try:
+            found = sock.recvfrom(room, _peek)
+        except MemoryError:
+            if found is None:
+                raise
+            break
+        if len(found[0]) < room:
+            break
+        room *= 2
+    if found is not None and (len(found[0]) < room or room < most):
+        sock.recv(1)  # the rest of it goes as well
+        return found
     return sock.recvfrom(most)  # type: ignore[no-any-return]
 
 

@@ -69,6 +69,17 @@ class Future:
     __await__ = __iter__
 
 
+def serialized(message: "Any") -> bytes:
+    """The bytes of a message, in a buffer that grows to what it needs. Raises InvalidMessage."""
+    size = message._fixed_size or bounds.PUBLISH
+    while True:
+        buffer = memoryview(bytearray(size))
+        try:
+            return bytes(buffer[: message.serialize_into(buffer, 0)])
+        except BufferTooSmall as error:
+            size = error.size
+
+
 class Publisher:
     """Publishes one topic. Serialises into a buffer of its own, which only grows."""
 
@@ -88,11 +99,12 @@ class Publisher:
         elif message.__class__ is not self.type:
             message = converted(self.type, message, self.topic)
         self.messages += 1
-        try:
-            self._send(message)
-        except BufferTooSmall as error:
-            self._buffer = memoryview(bytearray(error.size + 4))
-            self._send(message)
+        while True:
+            try:
+                self._send(message)
+                break
+            except BufferTooSmall as error:
+                self._buffer = memoryview(bytearray(error.size + 4))
         for subscription in self._local:
             if not self.node.loop.later(subscription.deliver, message.copy()):
                 self.node._count("receive-queue-full")
@@ -259,7 +271,7 @@ class Service:
         answer(None, str(error) or type(error).__name__)
 
     def _bytes(self, response: "Any") -> bytes:
-        return bytes(converted(self.type.Response, response, self.name).serialize())
+        return serialized(converted(self.type.Response, response, self.name))
 
     def close(self) -> None:
         """Withdraw the service. Closing twice is allowed."""
@@ -291,7 +303,7 @@ class Client:
         kind = self.type.Request
         message = kind(**fields) if fields else converted(kind, request, self.name)
         future = Future(self.node, self.name)
-        self._send(bytes(message.serialize()), future)
+        self._send(serialized(message), future)
         return future
 
     def _send(self, body: bytes, future: Future) -> None:
