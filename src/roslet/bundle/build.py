@@ -118,12 +118,13 @@ def build(
     bounds: Mapping[str, int] | None = None,
     exact: bool = False,
     compiled: bool = True,
+    by_module: bool = True,
 ) -> Bundle:
     """Make the bundle of `program` in `output`: `lib/roslet` and `lib/main`, and `romfs.img` of both.
 
     `wanted` are types besides those that the program names, `definitions` folders for `roslet.load`. With `exact`
     errors say which field of a message is wrong, and big-endian CDR is read; a ROS 2 program with parameters has that in any
-    case. Raises DefinitionError,
+    case. Without `by_module` the sizes of modules are not found out, which takes most of the time. Raises DefinitionError,
     UnknownType, ValueError for a bound that there is not, Unreachable where there is no mpy-cross.
     """
     from roslet.gen import runtime
@@ -144,17 +145,18 @@ def build(
     log = [_ROSOUT[dialect]] if rosout else []
     compact: list[str] = []
     known: dict[str, Module | None] = {}
-    shaker = _shake(text, types.Types(dialect, registry, fast, compact, exact, log), chosen, known)
+    made = types.Types(dialect, registry, fast, compact, exact, log)
+    shaker = _shake(text, made, chosen, known)
     if shaker.reaches("roslet.node.micropython.parameters"):
         compact += ["rcl_interfaces/srv/" + name for name in _PARAMETER_SERVICES]
         compact.append("rcl_interfaces/msg/ParameterEvent")
-        exact = True  # the codec is there in any case
-    made = types.Types(dialect, registry, fast, compact, exact, log)
-    shaker = _shake(text, made, chosen, known)
+        # The codec is there in any case.
+        made = types.Types(dialect, registry, fast, compact, True, log)
+        shaker = _shake(text, made, chosen, known)
     bundle = Bundle(output, dialect, chosen, compiler is not None)
     for message in made.messages:
         bundle.types[message.name.text(dialect)] = made.maximum(message)
-    _write(shaker, bundle, compiler)
+    _write(shaker, bundle, compiler, by_module)
     return bundle
 
 
@@ -193,7 +195,7 @@ def _shake(
     )
 
 
-def _write(shaker: Shaker, bundle: Bundle, compiler: list[str] | None) -> None:
+def _write(shaker: Shaker, bundle: Bundle, compiler: list[str] | None, by_module: bool) -> None:
     library = bundle.folder / "lib"
     if library.exists():
         shutil.rmtree(library)
@@ -209,7 +211,7 @@ def _write(shaker: Shaker, bundle: Bundle, compiler: list[str] | None) -> None:
         else:
             target = target.with_suffix(".mpy")
             bundle.files[name + ".mpy"] = flash.compile_text(compiler, text, name, target)
-    for name, piece in linker.pieces.items():
+    for name, piece in linker.pieces.items() if by_module else ():
         text = ast.unparse(piece)
         if compiler is None:
             bundle.sizes[name] = len(text.encode())

@@ -12,11 +12,10 @@ import ast
 from roslet.bundle.source import (
     Function,
     Inliner,
+    Mentions,
     Module,
-    attributes_in,
     collect_constants,
     locate,
-    names_in,
 )
 
 TYPE_CHECKING = False
@@ -196,11 +195,12 @@ class Shaker:
     def _run(self) -> None:
         while self._waiting:
             piece, module, owner = self._waiting.pop()
-            for name in names_in([piece]):
+            mentions = Mentions(piece)
+            for name in mentions.names:
                 self._name(name, module, owner)
-            for base, attribute in attributes_in([piece]):
+            for base, attribute in mentions.attributes:
                 self._attribute(base, attribute, module)
-            for node in self._imports_in(piece):
+            for node in mentions.imports:
                 self._import(node)
 
     def _name(self, name: str, module: Module, owner: ast.ClassDef | None) -> None:
@@ -316,9 +316,6 @@ class Shaker:
         self._members.setdefault(name, []).append(definition)
         if name in self._members_live or name.startswith("__"):
             self._keep(definition)
-
-    def _imports_in(self, piece: ast.AST) -> list[ast.Import | ast.ImportFrom]:
-        return [one for one in ast.walk(piece) if isinstance(one, ast.Import | ast.ImportFrom)]
 
     # -- the result
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
 _CONSTANT = re.compile(r"_?[A-Z][A-Z0-9_]*$")
 _DROPPED = ("__slots__", "__all__", "TYPE_CHECKING")
@@ -213,40 +213,36 @@ def bound_names(scope: ast.AST) -> set[str]:
     return found - released
 
 
-def names_in(nodes: Iterable[ast.AST]) -> set[str]:
-    """The names that a piece of code has from outside of it."""
-    found: set[str] = set()
-    for node in nodes:
-        _names(node, frozenset(), found, set())
-    return found
+class Mentions:
+    """What a piece of code mentions. `names` that it has from outside; `attributes`: (name, attribute) for each attribute of
+    what has a name from outside, ("", attribute) for all others, and for what `getattr` and its like are given; `imports`."""
 
+    def __init__(self, piece: ast.AST) -> None:
+        self.names: set[str] = set()
+        self.attributes: set[tuple[str, str]] = set()
+        self.imports: list[ast.Import | ast.ImportFrom] = []
+        self._look(piece, frozenset())
 
-def attributes_in(nodes: Iterable[ast.AST]) -> set[tuple[str, str]]:
-    """(name, attribute) for each attribute of what has a name from outside; ("", attribute) for all others, and for what
-    `getattr` and its like are given."""
-    found: set[tuple[str, str]] = set()
-    for node in nodes:
-        _names(node, frozenset(), set(), found)
-    return found
-
-
-def _names(node: ast.AST, own: frozenset[str], names: set[str], attributes: set[tuple[str, str]]) -> None:
-    if isinstance(node, Scope):
-        own |= bound_names(node)
-    if isinstance(node, ast.Name):
-        if node.id not in own:
-            names.add(node.id)
-    elif isinstance(node, ast.Attribute):
-        base = node.value.id if isinstance(node.value, ast.Name) and node.value.id not in own else ""
-        attributes.add((base, node.attr))
-        if base:
-            return  # of a module only the attribute counts; of anything else the name does as well
-    elif (
-        isinstance(node, ast.Call)
-        and isinstance(node.func, ast.Name)
-        and node.func.id in ("getattr", "hasattr", "setattr")
-    ):
-        given = [one.value for one in node.args if isinstance(one, ast.Constant)]
-        attributes |= {("", one) for one in given if isinstance(one, str)}
-    for child in ast.iter_child_nodes(node):
-        _names(child, own, names, attributes)
+    def _look(self, node: ast.AST, own: frozenset[str]) -> None:
+        if isinstance(node, ast.Name):
+            if node.id not in own:
+                self.names.add(node.id)
+            return
+        if isinstance(node, Scope):
+            own |= bound_names(node)
+        elif isinstance(node, ast.Attribute):
+            base = node.value.id if isinstance(node.value, ast.Name) and node.value.id not in own else ""
+            self.attributes.add((base, node.attr))
+            if base:
+                return  # of a module only the attribute counts; of anything else the name does as well
+        elif isinstance(node, ast.Import | ast.ImportFrom):
+            self.imports.append(node)
+        elif (
+            isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Name)
+            and node.func.id in ("getattr", "hasattr", "setattr")
+        ):
+            given = [one.value for one in node.args if isinstance(one, ast.Constant)]
+            self.attributes |= {("", one) for one in given if isinstance(one, str)}
+        for child in ast.iter_child_nodes(node):
+            self._look(child, own)
