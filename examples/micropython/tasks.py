@@ -13,13 +13,13 @@ count = node.publisher("count", "std_msgs/msg/UInt32")
 chatter = node.subscribe("chatter", "std_msgs/msg/String")
 
 
-async def counting():
+async def counting() -> None:
     while not node.is_shutdown:
         count.publish(data=count.messages)
         await asyncio.sleep(1.0)
 
 
-async def main():
+async def main() -> None:
     task = asyncio.create_task(counting())
     async for message in chatter:  # serves the node as well
         print(message.data)

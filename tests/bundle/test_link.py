@@ -55,7 +55,7 @@ def never():
     from roslet.three import nothing
     return nothing
 '''
-TWO = '''
+TWO = """
 WIDTH = 3
 if CPYTHON:
     raise ImportError("not on a board")
@@ -78,15 +78,15 @@ class Base:
 
     def _secret_of_base(self):
         return 0
-'''
+"""
 THREE = "nothing = 1\n"
-PROGRAM = '''
+PROGRAM = """
 import roslet
 thing = roslet.Thing("s")
 RESULTS.append(thing.tell())
 RESULTS.append(thing.shared())
 RESULTS.append(roslet.found_by_text(thing))
-'''
+"""
 TEXTS = {
     "roslet": "from roslet.one import Thing, found_by_text\n",
     "roslet.one": ONE,

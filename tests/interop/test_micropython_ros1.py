@@ -4,14 +4,14 @@ services, parameters, the log; and a peer that is killed and back."""
 from __future__ import annotations
 
 import os
-import pathlib
 import time
 from collections.abc import Iterator
 
 import pytest
 
+import peers
 from interop import boards
-from interop.ros1 import Master, Peer, Program, Tools, wait_until
+from interop.ros1 import Master, Peer, Program, wait_until
 
 HEAP = "512k"
 TURNS = 20 if os.environ.get("ROSLET_LONG") else 3
@@ -77,38 +77,50 @@ def test_the_peer_calls_the_boards_service(peer: Peer) -> None:
     assert failed.startswith("failed") and (peer.kind == "roscpp" or "factor is zero" in failed)
 
 
-def test_the_board_calls_the_peers_service(peer: Peer, master: Master, tools: Tools) -> None:
+def test_the_board_calls_the_peers_service(peer: Peer, looker: Looker) -> None:
     service = f"/scale_{peer.kind}"
     peer.ask(f"serve {service}", f"serving {service}")
-    assert asked(tools, f"call {service}") == "scaled 1 3.0"
+    assert looker.asked(f"call {service}") == "scaled 1 3.0"
+
+
+class Looker:
+    """A rospy program that asks the board, and hears what it says and logs."""
+
+    def __init__(self, master: Master) -> None:
+        command = [peers.DEBIAN_PYTHON, boards.PROGRAMS / "rospy_board.py"]
+        self.program = Program(command, master.environment())
+        self.program.wait_for("ready")
+
+    def asked(self, words: str) -> str:
+        """What the board says to a request."""
+        before = len(self.program.told("said "))
+        self.program.say(words)
+        return self.program.wait_for("said ", before + 1)[before].partition(" ")[2]
 
 
 @pytest.fixture(scope="module")
-def tools(master: Master, tmp_path_factory: pytest.TempPathFactory) -> Tools:
-    return Tools(master, tmp_path_factory.mktemp("board-tools"))
+def looker(master: Master, board: Program) -> Iterator[Looker]:
+    peers.require("rospy")
+    started = Looker(master)
+    yield started
+    started.program.stop()
 
 
-def asked(tools: Tools, words: str) -> str:
-    """What the board says to a request."""
-    echo = tools.start("rostopic", "echo", "-n", "1", "-p", "/said")
-    wait_until(lambda: "/rostopic" in tools.run("rostopic", "info", "/said").partition("Subscribers")[2], "heard")
-    tools.run("rostopic", "pub", "-1", "/ask", "std_msgs/String", words)
-    echo.finish()
-    return echo.lines[-1].partition(",")[2]
-
-
-def test_tools_see_parameters_topics_and_the_log(board: Program, tools: Tools) -> None:
-    assert tools.run("rosparam", "get", "/board/mood").strip() == "calm"
-    tools.run("rosparam", "set", "/elsewhere", "7")
-    assert asked(tools, "get /elsewhere") == "7"
-    assert asked(tools, "watch /elsewhere") == "watching"
-    info = tools.run("rosnode", "info", "/board")
-    assert " * /beat [std_msgs/UInt32]" in info and " * /scale" in info
-    log = tools.start("rostopic", "echo", "-n", "1", "-p", "/rosout")
-    wait_until(lambda: "/rostopic" in tools.run("rostopic", "info", "/rosout").partition("Subscribers")[2], "heard")
-    tools.run("rostopic", "pub", "-1", "/ask", "std_msgs/String", "log hot")
-    log.finish()
-    assert "/board" in log.lines[-1] and "hot" in log.lines[-1]
+def test_rospy_sees_parameters_topics_and_the_log(looker: Looker) -> None:
+    program = looker.program
+    program.say("param /board/mood")
+    assert program.wait_for("param ") == ["param calm"]
+    program.say("set /elsewhere 7")
+    program.wait_for("set")
+    assert looker.asked("get /elsewhere") == "7"
+    assert looker.asked("watch /elsewhere") == "watching"
+    before = len(program.told("said "))
+    program.say("set /elsewhere 8")
+    assert program.wait_for("said ", before + 1)[before] == "said changed 8"
+    program.say("topics")
+    assert "('/beat', 'std_msgs/UInt32')" in program.wait_for("topics ")[0]
+    program.say("log hot")
+    program.wait_for("logged /board 4 hot")
 
 
 def test_a_peer_is_killed_and_back(board: Program, master: Master) -> None:

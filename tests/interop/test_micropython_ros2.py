@@ -1,5 +1,5 @@
-"""A node on MicroPython with rclpy on Fast DDS and with CycloneDDS, both directions, in a heap of 1 MB: user-defined types, an
-image of 32 KB, services, parameters, the log; and a peer that is killed and back."""
+"""A node on MicroPython with rclpy on Fast DDS and with CycloneDDS, both directions, in a heap of 1 MB: user-defined
+types, an image of 32 KB, services, parameters, the log; and a peer that is killed and back."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import pytest
 
 import peers
 from interop import boards
-from interop.namespace import Namespace, Program
+from interop.namespace import Program
 from interop.ros2_exchange import STRING, UINT32
-from interop.ros2_peers import Host, Peer
+from interop.ros2_peers import Host, Peer, wait_until
 
 HEAP = "1m"
 TURNS = 20 if os.environ.get("ROSLET_LONG") else 3
@@ -74,10 +74,11 @@ def test_an_image_of_32_kb_comes_from_the_board(peer: Peer) -> None:
         peer.ask("close", one)
 
 
-def test_coordinates_come_back(peer: Peer) -> None:
-    if peer.kind == "kilted":
-        pytest.skip("the wheels of rclpy have no generator for a type of our own; CycloneDDS has it by hand")
-    echoed(peer, COORDINATE, "/coordinate", 0, 20)
+def test_coordinates_come_back(host: Host, board: Program) -> None:
+    """Of CycloneDDS, which has the type by hand; the wheels of rclpy have no generator for a type of our own."""
+    cyclone = host.peer("cyclone", "coordinates")
+    echoed(cyclone, COORDINATE, "/coordinate", 0, 20)
+    cyclone.quit()
 
 
 def test_the_peer_calls_the_boards_service(peer: Peer) -> None:
@@ -121,3 +122,21 @@ def test_a_peer_is_killed_and_back(host: Host, board: Program) -> None:
     after = host.peer("cyclone", "after")
     echoed(after, STRING, "/text", 8, 5)
     after.quit()
+
+
+def test_a_node_lives_beside_other_tasks_of_asyncio(host: Host, tmp_path: pathlib.Path) -> None:
+    made = boards.bundle("ros2", tmp_path, peers.ROOT / "examples/micropython/tasks.py")
+    tasks = host.namespace.start(*boards.command(made, "1m"), name="tasks")
+    peer = host.peer("cyclone", "beside")
+    peer.ask("subscription", "count", "/count", UINT32, 0, {})
+    peer.ask("publisher", "chatter", "/chatter", STRING, {})
+    peer.wait(1, "matched", "chatter")
+    peer.wait(1, "matched", "count")
+    peer.ask("publish", "chatter", 7, 3, 12, 0.0)
+    tasks.wait_until(lambda lines: [line[:1] for line in lines] == ["7", "8", "9"], 10.0, "three messages")
+    before, wrong = peer.ask("heard", "count")
+    assert wrong == []
+    wait_until(lambda: len(peer.ask("heard", "count")[0]) >= len(before) + 2, "it goes on counting")
+    numbers = peer.ask("heard", "count")[0]
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+    peer.quit()

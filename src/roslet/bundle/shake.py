@@ -2,7 +2,8 @@
 
 What a module defines is live where live code mentions it. A method or class attribute of a live class is live where live
 code has an attribute of its name, whoever's: more than is needed, and never less, as long as names are not made up at run
-time; those given to `getattr` are seen. Importing a module of roslet has no effect but its names, so a module of which no name is live is left out.
+time; those given to `getattr` are seen. Importing a module of roslet has no effect but its names, so a module of
+which no name is live is left out.
 """
 
 from __future__ import annotations
@@ -100,7 +101,9 @@ class Shaker:
         return self._modules[name]
 
     def _load(self, name: str) -> Module | None:
-        if not name.startswith("roslet") or any(name == one or name.startswith(one + ".") for one in self._excluded):
+        if not name.startswith("roslet") or any(
+            name == one or name.startswith(one + ".") for one in self._excluded
+        ):
             return None
         if name in self._texts:
             package = any(other.startswith(name + ".") for other in self._texts)
@@ -116,12 +119,12 @@ class Shaker:
 
     def _prepare(self, module: Module) -> None:
         """Make imports absolute and direct, and constants numbers."""
-        module.tree.body = [
-            made for one in module.tree.body for made in self._direct(one, module)
-        ]
+        module.tree.body = [made for one in module.tree.body for made in self._direct(one, module)]
         for function in ast.walk(module.tree):
             if isinstance(function, (*Function, ast.If, ast.Try)):
-                function.body = [made for one in function.body for made in self._direct(one, module)] or [ast.Pass()]
+                function.body = [made for one in function.body for made in self._direct(one, module)] or [
+                    ast.Pass()
+                ]
         names: dict[str, int] = {}
         modules: dict[str, Mapping[str, int]] = {}
         for statement in module.tree.body:
@@ -260,7 +263,9 @@ class Shaker:
                         found.setdefault(alias.asname or alias.name, []).append((node.module, alias.name))
                 elif isinstance(node, ast.Import):
                     for alias in node.names:
-                        found.setdefault(alias.asname or alias.name.partition(".")[0], []).append((alias.name, ""))
+                        found.setdefault(alias.asname or alias.name.partition(".")[0], []).append(
+                            (alias.name, "")
+                        )
         return found
 
     def _import(self, node: ast.Import | ast.ImportFrom) -> None:
@@ -348,10 +353,15 @@ class Shaker:
             found.append(statement)
         return found
 
+
 def _defined(statement: Statement) -> str | None:
     """The name that a statement defines and does nothing else."""
     if isinstance(statement, (*Function, ast.ClassDef)):
         return statement.name
-    if isinstance(statement, ast.Assign) and len(statement.targets) == 1 and isinstance(statement.targets[0], ast.Name):
+    if (
+        isinstance(statement, ast.Assign)
+        and len(statement.targets) == 1
+        and isinstance(statement.targets[0], ast.Name)
+    ):
         return statement.targets[0].id
     return None

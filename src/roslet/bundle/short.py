@@ -20,8 +20,8 @@ _DIGITS = "abcdefghijklmnopqrstuvwxyz0123456789"
 def shorten(
     pieces: Iterable[ast.Module], program: ast.Module, public: Iterable[str]
 ) -> tuple[dict[str, str], dict[str, str]]:
-    """Rename what the classes in `pieces` have, and what the pieces define, but for the names in `public`; what became of the
-    members, and of the modules' names."""
+    """Rename what the classes in `pieces` have, and what the pieces define, but for the names in `public`; what
+    became of the members, and of the modules' names."""
     names = _Names(pieces)
     names.keep(program)
     members = names.rename()
@@ -40,11 +40,10 @@ def _shorten_globals(
             elif isinstance(node, ast.arg):
                 taken.add(node.arg)
         for statement in piece.body:
-            if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef):
-                defined[statement.name] = 1
-            elif isinstance(statement, ast.ClassDef) and not _is_error(statement):
-                defined[statement.name] = 1
-            elif isinstance(statement, ast.Assign):
+            if isinstance(statement, ast.ClassDef):
+                if not _is_error(statement):
+                    defined[statement.name] = 1
+            else:
                 defined.update(dict.fromkeys(_bound(statement), 1))
     chosen: dict[str, str] = {}
     number = 0
@@ -211,8 +210,8 @@ class _Renamer(ast.NodeTransformer):
                     renamed[name] = self._chosen[name]
             if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef):
                 statement.name = renamed.get(statement.name, statement.name)
-        for name in _class_level(node):
-            name.id = renamed.get(name.id, name.id)
+        for one in _class_level(node):
+            one.id = renamed.get(one.id, one.id)
         self.generic_visit(node)
         return node
 

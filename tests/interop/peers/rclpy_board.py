@@ -26,8 +26,16 @@ def main():
     print("speed", answer(client.get_parameters(["speed"])).values[0].double_value, flush=True)
     described = answer(client.describe_parameters(["speed"])).descriptors[0]
     print("range", described.floating_point_range[0].to_value, flush=True)
-    print("refused", answer(client.set_parameters([Parameter("speed", value=11.0)])).results[0].successful, flush=True)
-    print("taken", answer(client.set_parameters([Parameter("speed", value=2.5)])).results[0].successful, flush=True)
+    print(
+        "refused",
+        answer(client.set_parameters([Parameter("speed", value=11.0)])).results[0].successful,
+        flush=True,
+    )
+    print(
+        "taken",
+        answer(client.set_parameters([Parameter("speed", value=2.5)])).results[0].successful,
+        flush=True,
+    )
     end = time.monotonic() + 10
     while time.monotonic() < end and not [one for one in heard if one.name == "board"]:
         rclpy.spin_once(node, timeout_sec=0.1)

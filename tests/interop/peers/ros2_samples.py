@@ -108,7 +108,12 @@ _SAMPLES = {
     "std_msgs/msg/String": _string,
     "std_msgs/msg/UInt32": lambda i, size: {"data": i},
     "geometry_msgs/msg/PointStamped": _point_stamped,
-    "mros_comm_measure/msg/Coordinate": lambda i, size: {"x": i + 0.5, "y": -2.0 * i, "z": 0.25, "time": _stamp(i)},
+    "mros_comm_measure/msg/Coordinate": lambda i, size: {
+        "x": i + 0.5,
+        "y": -2.0 * i,
+        "z": 0.25,
+        "time": _stamp(i),
+    },
     "sensor_msgs/msg/Image": _image,
     "sensor_msgs/msg/PointCloud2": _point_cloud,
     "diagnostic_msgs/msg/DiagnosticArray": _diagnostics,

@@ -1,5 +1,5 @@
-"""Sends Coordinates to an echo and waits for each. roslet_pinger.py NETWORK COUNT NAME [QUIET]: with QUIET it is only there, for
-that many seconds. Prints how many came back right, and how many a second."""
+"""Sends Coordinates to an echo and waits for each. roslet_pinger.py NETWORK COUNT NAME [QUIET]: with QUIET it is
+only there, for that many seconds. Prints how many came back right, and how many a second."""
 
 import sys
 import time

@@ -29,8 +29,9 @@ if TYPE_CHECKING:
 
 
 class Matching:
-    """`endpoints`: all remote ones by GUID; `interest`: which of them are kept, all where None; what was not kept is missing for
-    endpoints of ours that come later (see `Spdp.relearn`). `routes`: which of our readers take what a remote writer sends."""
+    """`endpoints`: all remote ones by GUID; `interest`: which of them are kept, all where None; what was not kept is
+    missing for endpoints of ours that come later (see `Spdp.relearn`). `routes`: which of our readers take what a
+    remote writer sends."""
 
     def __init__(
         self,

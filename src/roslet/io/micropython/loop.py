@@ -165,8 +165,8 @@ class Loop:
         return True
 
     async def run(self, predicate: "Callable[[], object]") -> None:
-        """Serve until `predicate()` is true, beside other tasks of asyncio. Looks at once while there is something to do, else
-        every IDLE_LOOK milliseconds."""
+        """Serve until `predicate()` is true, beside other tasks of asyncio. Looks at once while there is something
+        to do, else every IDLE_LOOK milliseconds."""
         import asyncio
 
         pause = 0

@@ -53,11 +53,11 @@ class Ros1Shell:
             self.engine.count("no-descriptors")
             self._evict()
             return None
-        if len([stream for stream in self.streams if stream.kind != "out"]) >= self._connections:
-            if not self._evict():
-                self.engine.count("too-many-connections")
-                sock.close()
-                return None
+        accepted = len([stream for stream in self.streams if stream.kind != "out"])
+        if accepted >= self._connections and not self._evict():
+            self.engine.count("too-many-connections")
+            sock.close()
+            return None
         sock.setblocking(False)
         sockets.tune(sock)
         return sock, sockets.source(raw)[0]

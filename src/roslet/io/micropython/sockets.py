@@ -132,24 +132,26 @@ def datagrams(port: int, shared: bool = False) -> "Any":
 def receive(sock: "Any", most: int) -> "tuple[bytes, Any]":
     """A datagram, of which the rest beyond `most` is lost, and where it came from. Raises OSError, MemoryError.
 
-    MicroPython allots room for the longest before it looks. Where it can look first, the room is that of most datagrams, and of
-    one for which there is no memory the beginning is taken: it has whole submessages, and the rest will be asked for again.
+    MicroPython allots room for the longest before it looks. Where it can look first, the room is that of most
+    datagrams, and of one for which there is no memory the beginning is taken: it has whole submessages, and the rest
+    will be asked for again.
     """
     room = USUAL
-    found = None
+    found: Any = None
     while _peek and room < most:
         try:
             found = sock.recvfrom(room, _peek)
         except MemoryError:
             if found is None:
                 raise
-            break
-        if len(found[0]) < room:
-            break
+            whole = True  # of what can be had
+        else:
+            whole = len(found[0]) < room
+        if whole:
+            sock.recv(1)  # the rest of it goes as well
+            return found  # type: ignore[no-any-return]
         room *= 2
-    if found is not None and (len(found[0]) < room or room < most):
-        sock.recv(1)  # the rest of it goes as well
-        return found
+    found = None
     return sock.recvfrom(most)  # type: ignore[no-any-return]
 
 

@@ -41,7 +41,7 @@ class Stream:
 
     def deadline(self) -> "float | None":
         """When the machine's time is up, or that of the last words."""
-        return self._end if self._end is not None else self.machine.deadline()  # type: ignore[no-any-return]
+        return self._end if self._end is not None else self.machine.deadline()
 
     def handle_deadline(self, now: float) -> None:
         """Let the machine look at the time."""
@@ -187,5 +187,3 @@ def lose_machine(machine: "Any", reason: str, now: float) -> None:
     lost = getattr(machine, "lost", None) or getattr(machine, "connection_lost", None)
     if lost is not None:
         lost(reason, now)
-
-

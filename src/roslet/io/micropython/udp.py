@@ -74,7 +74,9 @@ class Domain:
             multicast=(locator.udp4(GROUP, group_port),) if self._group is not None else (),
         )
         self.context = Context(self.participant, listens=False)
-        self._topics: dict[str, int] = {}  # ours, and what of them; others' endpoints are kept if they may match
+        self._topics: dict[
+            str, int
+        ] = {}  # ours, and what of them; others' endpoints are kept if they may match
         self._dropped = False  # whether there was any of those
         self.participant.keep_only(self._is_ours)
         for sock in (self._meta, self._user, self._group):
@@ -169,8 +171,8 @@ class Domain:
         return True
 
     def expect(self, topic: str, writes: bool) -> None:
-        """An endpoint of this topic is about to be made, a writer or a reader. To be made before the node is first served, or
-        peers have to say again what they have."""
+        """An endpoint of this topic is about to be made, a writer or a reader. To be made before the node is first
+        served, or peers have to say again what they have."""
         known = self._topics.get(topic, 0)
         bit = _WRITES if writes else _READS
         if not known & bit:

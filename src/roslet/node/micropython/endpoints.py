@@ -93,7 +93,8 @@ class Publisher:
         self._local: list[Subscription] = []
 
     def publish(self, message: "Any" = None, **fields: "Any") -> None:
-        """Send a message: one of this type, a dict, or its fields as keywords. Raises InvalidMessage, TypeError, NodeClosed."""
+        """Send a message: one of this type, a dict, or its fields as keywords. Raises InvalidMessage, TypeError,
+        NodeClosed."""
         if fields:
             message = self.type(**fields)
         elif message.__class__ is not self.type:
@@ -134,8 +135,8 @@ class Publisher:
 
 
 class Subscription:
-    """Receives one topic. A message may have views on the receive buffer: it is good until its callback returns, and `copy()`
-    keeps it. What comes while a callback runs waits, as bytes, `qos.depth` messages at most."""
+    """Receives one topic. A message may have views on the receive buffer: it is good until its callback returns, and
+    `copy()` keeps it. What comes while a callback runs waits, as bytes, `qos.depth` messages at most."""
 
     def __init__(
         self, node: "Node", topic: str, kind: "Any", callback: "Callable[[Any], object] | None", qos: "Any"
@@ -162,7 +163,9 @@ class Subscription:
             return
         try:
             message = self.type.deserialize_from(view, start, end)
-        except Exception as error:  # a peer's bytes must not come out of spin, whatever they do to the decoder
+        except (
+            Exception
+        ) as error:  # a peer's bytes must not come out of spin, whatever they do to the decoder
             self.malformed += 1
             self.node._count("malformed-message")
             if self.malformed == 1:

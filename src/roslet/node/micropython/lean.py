@@ -1,5 +1,5 @@
-"""What generated code falls back on in a bundle without the exact codec: `roslet.wire.message.rescue_read` and `rescue_write` in a
-few lines. They say less of what is wrong, and read little-endian CDR only."""
+"""What generated code falls back on in a bundle without the exact codec: `roslet.wire.message.rescue_read` and
+`rescue_write` in a few lines. They say less of what is wrong, and read little-endian CDR only."""
 
 from roslet.errors import InvalidMessage, MalformedMessage
 from roslet.node.micropython import bounds

@@ -1,4 +1,5 @@
-"""The node on MicroPython: the names of `roslet.Node`, one thread, blocking (`spin`) or beside other tasks (`await node.run()`).
+"""The node on MicroPython: the names of `roslet.Node`, one thread, blocking (`spin`) or beside other tasks (`await
+node.run()`).
 
 It does nothing while nobody serves it: a program that publishes must call `spin`, `sleep`, `spin_once`, or run as a task.
 """
@@ -117,7 +118,8 @@ class Rate:
 
 
 class Node:
-    """A node on a ROS network. `name network namespace` as for `roslet.Node`; there are no command lines, so no remappings."""
+    """A node on a ROS network. `name network namespace` as for `roslet.Node`; there are no command lines, so no
+    remappings."""
 
     _seen = True
 
@@ -335,4 +337,3 @@ def environment(name: str) -> "str | None":
     """A variable of the environment; boards have none."""
     getenv = getattr(os, "getenv", None)
     return getenv(name) if getenv is not None else None
-

@@ -1,4 +1,5 @@
-"""Stands for `roslet.engine.ros2.graph` on MicroPython: a node there has no questions about the graph, so none of it is kept."""
+"""Stands for `roslet.engine.ros2.graph` on MicroPython: a node there has no questions about the graph, so none of it
+is kept."""
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

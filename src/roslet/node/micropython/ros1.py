@@ -4,7 +4,15 @@ from struct import pack_into
 
 from roslet.engine.ros1 import answers
 from roslet.engine.ros1.engine import Engine
-from roslet.errors import Fault, NodeClosed, ParameterNotSet, RosletError, ServiceFailed, UnknownType, Unsupported
+from roslet.errors import (
+    Fault,
+    NodeClosed,
+    ParameterNotSet,
+    RosletError,
+    ServiceFailed,
+    UnknownType,
+    Unsupported,
+)
 from roslet.io.micropython import sockets
 from roslet.io.micropython.ros1 import Ros1Shell
 from roslet.names.networks import parse_host_port, parse_network

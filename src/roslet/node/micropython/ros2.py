@@ -7,7 +7,16 @@ from roslet.engine.rtps.limits import Limits
 from roslet.errors import NodeClosed, RosletError, UnknownType
 from roslet.io.micropython.udp import Domain
 from roslet.names.networks import parse_ros2_network
-from roslet.names.ros2 import REPLY, REQUEST, TOPIC, check_namespace, check_node_name, dds_topic, dds_type, expand
+from roslet.names.ros2 import (
+    REPLY,
+    REQUEST,
+    TOPIC,
+    check_namespace,
+    check_node_name,
+    dds_topic,
+    dds_type,
+    expand,
+)
 from roslet.node.micropython import bounds, endpoints
 from roslet.node.micropython.endpoints import Future
 from roslet.node.micropython.node import environment

@@ -1,4 +1,5 @@
-"""Message classes on MicroPython: those that the bundle holds, found by name. Stands where CPython has `roslet.gen.runtime`."""
+"""Message classes on MicroPython: those that the bundle holds, found by name. Stands where CPython has
+`roslet.gen.runtime`."""
 
 from roslet.errors import UnknownType
 from roslet.wire.message import Message, rescue_read, rescue_write
@@ -7,8 +8,10 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+
 class Compact(Message):
-    """The base of a class without code of its own: it is written and read by its field table, which is smaller and slower."""
+    """The base of a class without code of its own: it is written and read by its field table, which is smaller and
+    slower."""
 
     def serialize_into(self, buffer: "Any", offset: int = 0, parts: "Any" = None) -> int:
         return rescue_write(self, buffer, offset, parts, ValueError())
