@@ -14,6 +14,7 @@ from interop import boards
 from interop.namespace import Program
 from interop.ros2_exchange import STRING, UINT32
 from interop.ros2_peers import Host, Peer, wait_until
+from roslet.bundle.build import Bundle
 
 HEAP = "1m"
 TURNS = 20 if os.environ.get("ROSLET_LONG") else 3
@@ -140,3 +141,41 @@ def test_a_node_lives_beside_other_tasks_of_asyncio(host: Host, tmp_path: pathli
     numbers = peer.ask("heard", "count")[0]
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
     peer.quit()
+
+
+LATE = """
+import roslet
+
+node = roslet.Node("late", network="ros2://")
+early = node.publisher("early", "std_msgs/msg/UInt32")
+print("ready")
+node.spin_until(lambda: early.subscriber_count, 20.0)
+node.spin(1.0)
+node.subscribe("text", "std_msgs/msg/String", lambda message: print(message.data[0]))
+print("subscribed")
+node.spin()
+"""
+
+
+@pytest.fixture(scope="module")
+def late_node(tmp_path_factory: pytest.TempPathFactory) -> Bundle:
+    folder = tmp_path_factory.mktemp("late")
+    (folder / "late.py").write_text(LATE)
+    return boards.bundle("ros2", folder / "bundle", folder / "late.py")
+
+
+@pytest.mark.parametrize("kind", ["kilted", "cyclone", "roslet"])
+def test_a_topic_that_is_named_late_finds_who_was_there(
+    kind: str, late_node: Bundle, tmp_path: pathlib.Path
+) -> None:
+    """What peers announced of it was not kept: they are asked again."""
+    with Host(tmp_path) as host:
+        peer = host.peer(kind, "early_bird")
+        peer.ask("publisher", "text", "/text", STRING, {})
+        peer.ask("subscription", "early", "/early", UINT32, 0, {})
+        late = host.namespace.start(*boards.command(late_node, "1m"), name="late")
+        late.wait_for("subscribed")
+        peer.wait(1, "matched", "text")
+        peer.ask("publish", "text", 5, 1, 8, 0.0)
+        late.wait_until(lambda lines: lines[-1] == "5", 10.0, "the message")
+        peer.quit()
