@@ -71,6 +71,18 @@ def test_an_image_of_32_kb_comes_back(peer: Peer) -> None:
     echoed(peer, "sensor_msgs/Image", "/image", 32768, 3)
 
 
+def test_a_latched_message_that_comes_with_the_header_is_heard(peer: Peer) -> None:
+    peer.ask("subscribe std_msgs/String /text_back 10", "subscribed /text_back")
+    wait_until(lambda: peer.publishers("/text_back") == 1, "the peer is connected")
+    before = len(peer.told("got /text_back "))
+    peer.ask("advertise std_msgs/String /text 1", "advertised /text")
+    peer.ask("publish /text 0 10", "published /text 0")
+    peer.wait_for("got /text_back ", before + 1)
+    assert peer.told("got /text_back ")[before:] == ["got /text_back 0 ok"]
+    peer.ask("unadvertise /text", "unadvertised /text")
+    peer.ask("unsubscribe /text_back", "unsubscribed /text_back")
+
+
 def test_the_peer_calls_the_boards_service(peer: Peer) -> None:
     assert peer.ask("call /scale 5 2.5 0", "called /scale") == "ok"
     failed = peer.ask("call /scale 5 0 0", "called /scale")

@@ -21,6 +21,7 @@ class Ros1Shell:
         self.engine = engine
         self.loop = loop
         self.room = bytearray(room)
+        self.max_unsent = engine.max_body  # bytes of answers that wait for a peer which does not read them
         self.streams: list[Stream] = []  # the latest used at the end
         self._connections = connections
         self._opening: list[Any] = []  # machines whose connection is being made

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from roslet.io.micropython.ros1 import Ros1Shell
 
+UNREAD = "unread-answers"
 # Seconds that a connection that is to be closed may take for what it still has to send.
 LAST_WORDS = 2.0
 
@@ -28,6 +29,7 @@ class Stream:
         self.connecting = kind == "out"
         self.description = "TCPROS connection"
         self.rest: bytes | memoryview = b""
+        self._user = False
         self._end: float | None = None
         self._events = WRITE if self.connecting else READ
         machine.channel = self
@@ -93,6 +95,7 @@ class Stream:
         try:
             if into:
                 machine.received(count, now)
+                self._begin_user()
             else:
                 machine.receive_data(memoryview(room)[:count], now)
         except MemoryError:
@@ -108,8 +111,16 @@ class Stream:
         machine.channel = self
         machine.take_over(self.machine.data_to_send(), rest)
         self.machine = machine
-        if machine.user and rest:
-            machine.frames.feed(machine.take_rest())
+        self._begin_user()
+
+    def _begin_user(self) -> None:
+        """What came behind the header may run user code from now on."""
+        machine = self.machine
+        if machine.user and not self._user:
+            self._user = True
+            rest = machine.take_rest()
+            if rest:
+                machine.receive_data(rest, self.shell.loop.now())
 
     # -- output
 
@@ -126,6 +137,10 @@ class Stream:
             if self.closed:
                 return
             self.rest = memoryview(self.rest)[sent:] if sent < len(self.rest) else b""
+            if len(self.rest) > self.shell.max_unsent:
+                self.shell.engine.count(UNREAD)
+                self.lose("the peer does not read its answers")
+                return
         queue = getattr(machine, "queue", None)
         if queue is not None and not self.rest:
             while len(queue):

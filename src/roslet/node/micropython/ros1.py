@@ -238,7 +238,7 @@ class Publisher(endpoints.Publisher):
         return len(self._entry.links) + len(self._local)
 
     def _send(self, message: "Any") -> None:
-        if self.node.is_shutdown or self._entry is None:
+        if self.node.is_shutdown or self not in self._network._publishers:
             raise NodeClosed("the publisher of %s is closed" % self.topic)
         if self.type._has_header:
             message.header.seq = self.messages
