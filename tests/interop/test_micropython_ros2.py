@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import pathlib
+import time
 from collections.abc import Iterator
 
 import pytest
@@ -29,8 +30,12 @@ def host(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Host]:
 
 
 @pytest.fixture(scope="module")
-def board(host: Host, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Program]:
-    made = boards.bundle("ros2", tmp_path_factory.mktemp("board-ros2"))
+def made(tmp_path_factory: pytest.TempPathFactory) -> Bundle:
+    return boards.bundle("ros2", tmp_path_factory.mktemp("board-ros2"))
+
+
+@pytest.fixture(scope="module")
+def board(host: Host, made: Bundle) -> Iterator[Program]:
     program = host.namespace.start(*boards.command(made, HEAP), name="board")
     program.wait_for("ready")
     yield program
@@ -141,6 +146,27 @@ def test_a_node_lives_beside_other_tasks_of_asyncio(host: Host, tmp_path: pathli
     numbers = peer.ask("heard", "count")[0]
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
     peer.quit()
+
+
+def test_the_network_is_gone_and_back(made: Bundle, tmp_path: pathlib.Path) -> None:
+    with Host(tmp_path) as host:
+        board = host.namespace.start(*boards.command(made, HEAP), name="board")
+        board.wait_for("ready")
+        peer = host.peer("cyclone", "constant")
+        peer.ask("subscription", "text_back", "/text_back", STRING, 8, {})
+        peer.ask("publisher", "text", "/text", STRING, {})
+        peer.wait(1, "matched", "text")
+        peer.wait(1, "matched", "text_back")
+        for turn in range(TURNS):
+            host.namespace.run("ip link set lo down")
+            peer.ask("publish", "text", turn, 1, 8, 0.0)
+            time.sleep(1.0)
+            host.namespace.run(
+                "ip link set lo up && ip link set lo multicast on && ip route replace 239.0.0.0/8 dev lo"
+            )
+            peer.wait([list(range(turn + 1)), []], "heard", "text_back")
+        assert board.process.poll() is None
+        peer.quit()
 
 
 LATE = """
