@@ -111,6 +111,13 @@ def test_the_network_is_what_the_program_says(run: Run, tmp_path: pathlib.Path) 
     assert not [name for name in said["modules"] if "rtps" in name]
 
 
+def test_a_program_of_two_files_is_refused(run: Run, tmp_path: pathlib.Path) -> None:
+    (tmp_path / "helper.py").write_text("")
+    (tmp_path / "program.py").write_text("import roslet\nimport helper\n")
+    outcome = run("micropython", "bundle", tmp_path / "program.py", "--source", "--output", tmp_path / "out")
+    assert outcome.code == 2 and "imports helper.py: a bundled program is one file" in outcome.err
+
+
 def test_a_program_that_is_no_python_is_told(run: Run, tmp_path: pathlib.Path) -> None:
     path = tmp_path / "wrong.py"
     path.write_text("def :\n")

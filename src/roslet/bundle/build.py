@@ -141,7 +141,8 @@ def build(
     `wanted` are types besides those that the program names, `definitions` folders for `roslet.load`. With `exact`
     errors say which field of a message is wrong, and big-endian CDR is read; a ROS 2 program with parameters has that in any
     case. Without `by_module` the sizes of modules are not found out, which takes most of the time. Raises DefinitionError,
-    UnknownType, ValueError for a bound that there is not, Unreachable where there is no mpy-cross.
+    UnknownType, ValueError for a bound that there is not or a program of several files, Unreachable where there is no
+    mpy-cross.
     """
     from roslet.gen import runtime
 
@@ -157,6 +158,7 @@ def build(
         runtime.load(folder)
     registry = runtime.registry(dialect)
     text = program.read_text(encoding="utf-8")
+    _check_alone(text, program)
     fast = dict.fromkeys([*wanted, *types.mentioned(text, registry)])
     log = [_ROSOUT[dialect]] if rosout else []
     compact: list[str] = []
@@ -174,6 +176,18 @@ def build(
         bundle.types[message.name.text(dialect)] = made.maximum(message)
     _write(shaker, bundle, compiler, by_module)
     return bundle
+
+
+def _check_alone(text: str, program: Path) -> None:
+    """Raises ValueError where the program imports a file that lies beside it: that is not bundled."""
+    for node in ast.walk(ast.parse(text)):
+        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        if isinstance(node, ast.ImportFrom):
+            names = [node.module or ""]
+        for name in names:
+            beside = program.parent / (name.partition(".")[0] + ".py")
+            if beside.is_file():
+                raise ValueError(f"{program.name} imports {beside.name}: a bundled program is one file")
 
 
 def _public() -> dict[str, str]:
