@@ -37,6 +37,7 @@ COMMANDS = {
     "interface": "show message, service and action definitions",
     "gen": "generate code from definitions",
     "gateware": "build and simulate nodes in gates",
+    "micropython": "bundle and run nodes for MicroPython",
     "master": "be a ROS 1 master",
     "doctor": "find what keeps nodes from hearing each other",
     "run": "run an unmodified rospy or rclpy program, without ROS",

@@ -147,7 +147,16 @@ if CPYTHON:
 else:
     FAILURES = (TypeError, ValueError, AttributeError, LookupError, OverflowError)
 
+    _packers: "dict[str, Callable[..., Any]]" = {}  # by format: many modules have the same, and memory is short
+    _unpackers: "dict[str, Callable[..., Any]]" = {}
+
     def packer(form: str) -> "Callable[..., None]":
+        found = _packers.get(form)
+        if found is None:
+            found = _packers[form] = _packer(form)
+        return found
+
+    def _packer(form: str) -> "Callable[..., None]":
         pack_into = struct.pack_into
 
         def pack(buffer: "Any", offset: int, *values: object) -> None:
@@ -172,12 +181,15 @@ else:
         return make
 
     def unpacker(form: str) -> "Callable[..., tuple[Any, ...]]":
-        unpack_from = struct.unpack_from
+        found = _unpackers.get(form)
+        if found is None:
+            unpack_from = struct.unpack_from
 
-        def unpack(buffer: "Any", offset: int) -> "tuple[Any, ...]":
-            return unpack_from(form, buffer, offset)
+            def unpack(buffer: "Any", offset: int) -> "tuple[Any, ...]":
+                return unpack_from(form, buffer, offset)
 
-        return unpack
+            found = _unpackers[form] = unpack
+        return found
 
     def decode(data: "bytes | bytearray | memoryview") -> str:
         """UTF-8; a byte that is none becomes a question mark: MicroPython's str holds nothing else."""

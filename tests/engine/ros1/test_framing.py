@@ -132,6 +132,17 @@ def test_a_large_buffer_is_used_again_only_when_no_view_is_alive() -> None:
     collector.views.clear()
 
 
+def test_a_buffer_that_is_lent_serves_every_large_frame() -> None:
+    collector = Collector()
+    collector.receiver.lends = True
+    seen = []
+    large = frame(bytes(100_000))
+    for _ in range(3):
+        collector.receiver.feed(large)
+        seen.append(collector.receiver._spare)
+    assert seen[0] is not None and seen[0] is seen[1] is seen[2]
+
+
 @pytest.mark.cpython
 def test_a_kept_view_of_a_large_frame_never_changes() -> None:
     collector = Collector()

@@ -136,3 +136,26 @@ def test_what_does_not_match_is_told_again_only_where_it_is_for_another_reason()
     announce(writer.data.replace(qos=writer.qos.replace(ownership=qos.EXCLUSIVE)), network.now)
     network.run(1)
     assert told(other) == [("reliability",), ("reliability", "ownership")]
+
+
+def test_endpoints_of_no_interest_are_not_kept_and_found_again_when_they_are() -> None:
+    network = Network()
+    one, other = network.host(), network.host()
+    wanted: list[str] = ["t"]
+    one.participant.keep_only(lambda found: found.topic in wanted)
+    reader = one.participant.create_reader("t", "T", RELIABLE, network.now)
+    kept = other.participant.create_writer("t", "T", RELIABLE, network.now)
+    late = other.participant.create_writer("late", "T", RELIABLE, network.now)
+    assert matched(network, kept, reader)
+    network.run(2)
+    assert [found.topic for found in one.participant.endpoints.values()] == ["t"]
+    assert one.participant.counters["endpoint-not-kept"] >= 1
+    wanted.append("late")
+    found = one.participant.create_reader("late", "T", RELIABLE, network.now)
+    one.participant.spdp.relearn(network.now)
+    assert matched(network, late, found)
+    assert network.run(30, lambda: bool(reader.proxies))
+    late.write(body(1), network.now)
+    kept.write(body(2), network.now)
+    network.run(2)
+    assert sorted(numbers(one)) == [1, 2]

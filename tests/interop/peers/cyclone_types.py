@@ -8,6 +8,7 @@ from cyclonedds.idl.types import (
     array,
     bounded_str,
     byte,
+    float32,
     float64,
     int8,
     int32,
@@ -60,6 +61,14 @@ class Point(IdlStruct, typename="geometry_msgs::msg::dds_::Point_"):
     x: float64
     y: float64
     z: float64
+
+
+@ros("mros_comm_measure/msg/Coordinate")
+class Coordinate(IdlStruct, typename="mros_comm_measure::msg::dds_::Coordinate_"):
+    x: float32
+    y: float32
+    z: float32
+    time: Time
 
 
 @ros("geometry_msgs/msg/PointStamped")

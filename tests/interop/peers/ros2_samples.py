@@ -108,6 +108,12 @@ _SAMPLES = {
     "std_msgs/msg/String": _string,
     "std_msgs/msg/UInt32": lambda i, size: {"data": i},
     "geometry_msgs/msg/PointStamped": _point_stamped,
+    "mros_comm_measure/msg/Coordinate": lambda i, size: {
+        "x": i + 0.5,
+        "y": -2.0 * i,
+        "z": 0.25,
+        "time": _stamp(i),
+    },
     "sensor_msgs/msg/Image": _image,
     "sensor_msgs/msg/PointCloud2": _point_cloud,
     "diagnostic_msgs/msg/DiagnosticArray": _diagnostics,
@@ -128,6 +134,8 @@ def number(type_name, message):
         return message.data
     if type_name == "probe_msgs/msg/Probe":
         return message.number
+    if type_name == "mros_comm_measure/msg/Coordinate":
+        return message.time.sec - EPOCH
     stamped = message.transforms[0] if type_name == "tf2_msgs/msg/TFMessage" else message
     return stamped.header.stamp.sec - EPOCH
 

@@ -5,8 +5,10 @@ send or want to close, feeds what arrives into the machines, calls `pump(now)` a
 `handle_deadline(now)` at `deadline()`. Nothing here knows a socket or a clock. Runs on MicroPython.
 """
 
+from roslet.engine.ros1.framing import CHUNK
 from roslet.engine.ros1.graph import Publication, ServiceOffer, Subscription
 from roslet.engine.ros1.links import (
+    ROOM,
     FrameLink,
     IncomingLink,
     Machine,
@@ -22,6 +24,7 @@ from roslet.engine.ros1.slave import Slave
 from roslet.engine.ros1.udp import UdpReceiver
 from roslet.errors import Fault, InvalidName, ProtocolError, RosletError, Unreachable
 from roslet.names import parse_host_port
+from roslet.wire.http import MAX_BODY
 from roslet.wire.tcpros import MAX_FRAME, emit_header, require
 
 TYPE_CHECKING = False
@@ -84,6 +87,11 @@ class Engine:
         self.on_parameter: Callable[[str, object], None] | None = None
         self.on_shutdown: Callable[[str], None] | None = None
         self.on_master: Callable[[], None] | None = None  # the master is there (again)
+        # What a connection may take, in bytes: at once, for messages that come together; at once, for headers; of a call.
+        self.chunk = CHUNK
+        self.room = ROOM
+        self.max_body = MAX_BODY
+        self.lends = False  # whether views that sinks and handlers get are good until they return
         self._ids = 0
         self._new: list[Machine | RpcClient] = []
         self._touched: list[Machine | RpcClient] = []
@@ -126,7 +134,7 @@ class Engine:
         return machines
 
     def accept_rpc(self, now: float) -> RpcServer:
-        return RpcServer(now)
+        return RpcServer(now, self.max_body)
 
     def accept_tcpros(self, now: float) -> IncomingLink:
         return IncomingLink(self, now)
@@ -197,7 +205,7 @@ class Engine:
             done(None, error, now)
             return
         path = "/" + uri.partition("://")[2].partition("/")[2]
-        client = RpcClient(host, port, path, timeout=CALL_TIMEOUT)
+        client = RpcClient(host, port, path, timeout=CALL_TIMEOUT, max_body=self.max_body)
         if len(self._slave_calls) < MAX_SLAVE_CALLS:
             self._begin_call(client, method, arguments, done, now)
         else:

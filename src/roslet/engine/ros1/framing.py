@@ -35,7 +35,8 @@ class FrameReceiver:
 
     `prefix` bytes stand before each length (1 for service replies, else 0); `deliver` gets the start of the body and
     finds the prefix at `start - 4 - prefix`. With `copies` each small frame is delivered in a buffer of its own, for
-    types whose messages hold views: one small message that is kept must not keep a whole chunk alive.
+    types whose messages hold views: one small message that is kept must not keep a whole chunk alive. With `lends` views
+    are good until `deliver` returns: a large frame's buffer then always serves the next one.
     """
 
     def __init__(
@@ -45,9 +46,11 @@ class FrameReceiver:
         prefix: int = 0,
         chunk: int = CHUNK,
         copies: bool = False,
+        lends: bool = False,
     ) -> None:
         self.deliver = deliver if maximum >= chunk else self._checked(deliver)
         self.copies = copies
+        self.lends = lends
         self.maximum = maximum
         self._head = 4 + prefix
         self._prefix = prefix
@@ -154,7 +157,7 @@ class FrameReceiver:
         if large is None:
             return
         self.deliver(memoryview(large), self._head, size)
-        if _unshared(large) and (self._spare is None or len(self._spare) <= len(large)):
+        if (self.lends or _unshared(large)) and (self._spare is None or len(self._spare) <= len(large)):
             self._spare = large
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     # Takes a message: a view, where it starts and ends there, and the link it came by.
     Sink = Callable[[memoryview, int, int, SubscriberLink | UdpReceiver], None]
-    Handler = Callable[[memoryview, int, int, ServiceServerLink], bytes]
+    Handler = Callable[[memoryview, int, int, ServiceServerLink], bytes | None]
 
 # Seconds before a publisher that did not answer is asked again; doubled at each failure up to the second.
 RETRY_FIRST = 0.1

@@ -35,6 +35,8 @@ CLOSED = 3
 HANDSHAKE_TIMEOUT = 10.0
 # Bytes of replies to one client that wait to be sent before its next request is looked at.
 MAX_REPLIES = 1 << 20
+# Bytes that are read at once of a header, and of what a subscriber sends against the rules.
+ROOM = 4096
 # Characters of what a peer said that are told back or logged.
 MAX_ECHO = 200
 
@@ -68,7 +70,7 @@ class Machine:
         self.engine = engine
         self._outgoing: list[bytes] = []
         self._input = bytearray()
-        self._room = bytearray(4096)
+        self._room = bytearray(engine.room)
         self._deadline: float | None = None
 
     def connected(self, now: float) -> None:
@@ -149,7 +151,7 @@ class FrameLink(Machine):
         self, engine: "Engine", maximum: int = MAX_FRAME, prefix: int = 0, copies: bool = False
     ) -> None:
         super().__init__(engine)
-        self.frames = FrameReceiver(self._deliver, maximum, prefix, copies=copies)
+        self.frames = FrameReceiver(self._deliver, maximum, prefix, engine.chunk, copies, engine.lends)
         self.messages = 0
         self.bytes = 0
         self.peer_header: dict[str, str] = {}

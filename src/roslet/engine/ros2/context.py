@@ -60,6 +60,7 @@ class Context:
 
     graph      what is known of the domain
     counters   the participant's: what was dropped, by reason
+    listens    whether we hear what nodes others have; without, the graph knows their endpoints alone
     """
 
     def __init__(
@@ -69,6 +70,7 @@ class Context:
         max_nodes: int = discovery_info.MAX_NODES,
         max_endpoints: int = discovery_info.MAX_GIDS,
         batch: float = BATCH,
+        listens: bool = True,
     ) -> None:
         self.participant = participant
         self.enclave = enclave
@@ -78,6 +80,7 @@ class Context:
         self._max_nodes = max_nodes
         self._max_endpoints = max_endpoints
         self._batch = batch
+        self._listens = listens
         self._nodes: dict[int, _Node] = {}
         self._serial = 0
         self._endpoints = 0
@@ -104,9 +107,12 @@ class Context:
         self._writer = participant.create_writer(
             discovery_info.TOPIC, discovery_info.TYPE, WRITER_QOS, now, accepts=is_new
         )
-        self._reader = participant.create_reader(discovery_info.TOPIC, discovery_info.TYPE, READER_QOS, now)
         self.graph.endpoint_discovered(self._writer.data)
-        self.graph.endpoint_discovered(self._reader.data)
+        if self._listens:
+            self._reader = participant.create_reader(
+                discovery_info.TOPIC, discovery_info.TYPE, READER_QOS, now
+            )
+            self.graph.endpoint_discovered(self._reader.data)
         self._changed(now)
 
     def handle_event(self, event: "Any", now: float) -> bool:

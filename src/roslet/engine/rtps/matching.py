@@ -29,7 +29,9 @@ if TYPE_CHECKING:
 
 
 class Matching:
-    """`endpoints`: all remote ones by GUID; `routes`: which of our readers take what a remote writer sends."""
+    """`endpoints`: all remote ones by GUID; `interest`: which of them are kept, all where None; what was not kept is
+    missing for endpoints of ours that come later (see `Spdp.relearn`). `routes`: which of our readers take what a
+    remote writer sends."""
 
     def __init__(
         self,
@@ -47,6 +49,7 @@ class Matching:
         self.readers: dict[bytes, Reader] = {}
         self.endpoints: dict[bytes, EndpointData] = {}
         self.routes: dict[bytes, list[tuple[Reader, WriterProxy]]] = {}
+        self.interest: Callable[[EndpointData], bool] | None = None
         self._sizes: dict[bytes, int] = {}  # octets of the announcements, by GUID
         self._budget = Budget(limits.discovery_bytes, limits.discovery_share)
         self._of: dict[bytes, dict[bytes, EndpointData]] = {}  # by participant
@@ -139,6 +142,9 @@ class Matching:
             raise ProtocolError("endpoint-of-another-participant")
         before = self.endpoints.get(found.guid)
         if before == found:
+            return
+        if before is None and self.interest is not None and not self.interest(found):
+            self._count("endpoint-not-kept")
             return
         known = self._of.setdefault(prefix, {})
         if found.guid not in known and len(known) >= self._limits.endpoints:

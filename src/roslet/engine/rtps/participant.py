@@ -204,6 +204,11 @@ class Participant:
         self._matching.move(addresses_of(own.default_unicast, "")[:1], networks, now)
         self.spdp.move(own, to, networks, now)
 
+    def keep_only(self, interest: "Callable[[EndpointData], bool]") -> None:
+        """From now on keep only such endpoints of others. One of ours whose topic is a new one must be followed by
+        `spdp.relearn`."""
+        self._matching.interest = interest
+
     def _is_here(self, host: str) -> bool:
         if not self._networks or host.startswith("127."):
             return True

@@ -38,6 +38,7 @@ REASONS = {
     "endpoint-of-another-participant": "an endpoint announced by a participant that it does not belong to",
     "discovery-bytes-full": "an endpoint whose announcement is beyond what its participant, or all together, may take",
     "endpoints-full": "an endpoint beyond the bound of its participant",
+    "endpoint-not-kept": "an endpoint of a peer that could match none of ours, on a machine that keeps no others",
     "participant-message-truncated": "a message about liveliness that ends too early",
     "participant-message-invalid": "a message about liveliness that is none",
     # readers

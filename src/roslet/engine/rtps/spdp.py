@@ -245,6 +245,12 @@ class Spdp:
             self._lost(remote, now)
             self._deliver(ParticipantLost(remote.data, action == "expire"))
 
+    def relearn(self, now: float) -> None:
+        """Forget all participants and take them for new: what they announced of themselves is asked for again."""
+        for remote in list(self.remotes.values()):
+            self._step(remote.data.guid_prefix, EXPIRED, now)
+            self._announced(remote.data, remote.host, now)
+
     # -- time
 
     def _announce(self, now: float) -> None:

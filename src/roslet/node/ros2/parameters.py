@@ -153,7 +153,7 @@ class NodeParameters:
         range: tuple[float, ...] | None = None,  # noqa: A002 - what it is
     ) -> Any:
         """See `GraphApi.declare_parameter`. One that is declared already keeps its value."""
-        limits: Any = None if range is None else (*range, 0)[:3]
+        limits: Any = None if range is None else (tuple(range) + (0,))[:3]  # noqa: RUF005 - runs on MicroPython
         integer = isinstance(default, int)
         descriptor = Descriptor(
             name,

@@ -1,0 +1,103 @@
+"""What a node on MicroPython takes: flash of a bounded size, a heap of a bounded size, and none more after ten thousand
+messages. On the 64-bit Unix interpreter, whose objects are twice as large as a board's; the code runs from simulated flash.
+"""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import sys
+from typing import Literal
+
+import pytest
+
+import peers
+from interop import boards
+from interop.namespace import Namespace
+from interop.ros1 import Master, Program
+from roslet.bundle.build import Bundle, build
+
+LONG = bool(os.environ.get("ROSLET_LONG"))
+MESSAGES = 100_000 if LONG else 12_000
+# Seconds that they may take.
+LIMIT = 900.0 if LONG else 110.0
+DEFINITIONS = peers.ROOT / "examples/msgs/mros_comm_measure"
+# Bytes of .mpy, and of heap.
+FLASH = {"ros1": 60_000, "ros2": 110_000}
+
+
+def echo(dialect: Literal["ros1", "ros2"], folder: pathlib.Path, rosout: bool) -> Bundle:
+    peers.require("micropython")
+    boards.require_compiler()
+    text = (boards.PROGRAMS / "board_memory.py").read_text().replace("NETWORK", dialect + "://")
+    (folder / "program.py").write_text(text)
+    return build(
+        folder / "program.py",
+        folder / "bundle",
+        dialect,
+        definitions=[DEFINITIONS],
+        rosout=rosout,
+        by_module=False,
+    )
+
+
+def pinger(network: str, count: int, name: str, *rest: str) -> list[str]:
+    program = str(boards.PROGRAMS / "roslet_pinger.py")
+    return [sys.executable, program, network, str(count), name, str(DEFINITIONS), *rest]
+
+
+def drift(lines: list[str]) -> int:
+    """By how much what the heap holds grew from the first half to the second: the least of each, as what is under way at the
+    moment comes and goes."""
+    held = [int(line.split()[2]) for line in lines if line.startswith("memory")][1:]
+    half = len(held) // 2
+    assert half >= 5, lines
+    return min(held[half:]) - min(held[:half])
+
+
+@pytest.mark.parametrize(("dialect", "most"), FLASH.items())
+def test_an_echo_fits_its_flash(dialect: Literal["ros1", "ros2"], most: int, tmp_path: pathlib.Path) -> None:
+    boards.require_compiler()
+    text = (peers.ROOT / "examples/micropython/echo.py").read_text().replace("ros2://", dialect + "://")
+    (tmp_path / "echo.py").write_text(text)
+    made = build(tmp_path / "echo.py", tmp_path / "out", dialect, definitions=[DEFINITIONS], by_module=False)
+    assert made.total < most
+    assert made.image is not None and made.image.stat().st_size < most
+
+
+def test_a_ros1_echo_in_160_kb_takes_no_more_with_time(tmp_path: pathlib.Path) -> None:
+    made = echo("ros1", tmp_path, rosout=True)
+    master = Master("roslet", tmp_path)
+    environment = {
+        **os.environ,
+        "ROS_MASTER_URI": master.uri,
+        "ROS_IP": "127.0.0.1",
+        "PYTHONPATH": str(peers.ROOT / "src"),
+    }
+    board = Program(boards.command(made, "160k"), environment)
+    try:
+        board.wait_for("ready")
+        talker = Program(pinger("ros1://", MESSAGES, "pinger"), environment)
+        talker.finish(LIMIT)
+        assert talker.lines[-1].startswith(f"right {MESSAGES} of {MESSAGES} "), talker.lines
+        assert drift(board.lines) <= 0
+    finally:
+        board.stop()
+        master.stop()
+
+
+def test_a_ros2_echo_with_four_peers_in_256_kb_takes_no_more_with_time(tmp_path: pathlib.Path) -> None:
+    made = echo("ros2", tmp_path, rosout=False)
+    with Namespace(tmp_path) as namespace:
+        path = {"PYTHONPATH": str(peers.ROOT / "src")}
+        board = namespace.start(*boards.command(made, "256k"), name="board")
+        board.wait_for("ready")
+        for number in range(3):
+            one = namespace.start(
+                *pinger("ros2://", 0, f"peer{number}", str(LIMIT)), name=f"peer{number}", **path
+            )
+            one.wait_for("ready")
+        talker = namespace.start(*pinger("ros2://", MESSAGES, "pinger"), name="pinger", **path)
+        lines = talker.finish(LIMIT)
+        assert lines[-1].startswith(f"right {MESSAGES} of {MESSAGES} "), lines
+        assert drift(board.lines()) <= 0
