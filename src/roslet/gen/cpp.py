@@ -15,7 +15,7 @@ import os
 from roslet.errors import Unsupported
 from roslet.gen.collect import collect
 from roslet.gen.cpp_bounds import Bounds
-from roslet.gen.cpp_message import SUPPORT, Headers
+from roslet.gen.cpp_message import DURATION, SUPPORT, TIME, Headers
 from roslet.gen.cpp_names import header_path
 from roslet.gen.python_package import write_if_changed
 from roslet.idl import Action
@@ -43,6 +43,8 @@ def headers(registry: Registry, names: Iterable[TypeName | str], bounds: Bounds 
     interfaces: dict[str, Interface] = {}
     for name in names:
         collect(registry, registry.interface(name), interfaces)
+    if any(interface.name == TIME for interface in interfaces.values()):
+        collect(registry, registry.interface(DURATION), interfaces)  # which is the difference of two times
     spelled = Headers(registry, Bounds() if bounds is None else bounds)
     files = {SUPPORT: support_header()}
     for interface in interfaces.values():

@@ -3,7 +3,7 @@ part."""
 
 from __future__ import annotations
 
-from roslet.errors import DefinitionError
+from roslet.errors import DefinitionError, InvalidName, UnknownType
 from roslet.idl import Message, parse_type_name
 from roslet.idl.records import Array, Field, FieldType
 
@@ -68,8 +68,8 @@ class Bounds:
 def read_bounds(text: str, registry: Registry, file: str) -> dict[tuple[TypeName, str], int]:
     """What `Bounds.at` takes, from lines such as `std_msgs/Header.frame_id 32`; `#` begins a comment.
 
-    Raises DefinitionError, with the place in `file`, for a line that is none, an unknown type or field, and one that has no
-    bound.
+    Raises DefinitionError, with the place in `file`, for a line that is none, and for a type or a string or sequence that there
+    is not.
     """
     found: dict[tuple[TypeName, str], int] = {}
     for number, line in enumerate(text.split("\n"), 1):
@@ -79,7 +79,10 @@ def read_bounds(text: str, registry: Registry, file: str) -> dict[tuple[TypeName
         path, dot, field = words[0].rpartition(".")
         if len(words) != 2 or not dot or not words[1].isdecimal():
             raise DefinitionError("expected package/Name.field and a number", file, number, 1)
-        message = registry.interface(parse_type_name(path) if path.count("/") > 1 else path)
+        try:
+            message = registry.interface(parse_type_name(path) if path.count("/") > 1 else path)
+        except (InvalidName, UnknownType) as error:
+            raise DefinitionError(str(error), file, number, 1) from None
         if not isinstance(message, Message):
             raise DefinitionError(f"{path} is no message; name its parts", file, number, 1)
         if field not in _variable(message):

@@ -37,8 +37,8 @@ ENCAPSULATION = 4  # octets of the header before a body in CDR
 LARGEST = 0xFFFFFFFF
 """Octets of a message that are counted in 32 bits, as its strings and sequences are."""
 
-_DURATION = TypeName("builtin_interfaces", "msg", "Duration")
-_STAMPS = (TypeName("builtin_interfaces", "msg", "Time"), _DURATION)
+TIME = TypeName("builtin_interfaces", "msg", "Time")
+DURATION = TypeName("builtin_interfaces", "msg", "Duration")
 _OPERATORS = ("+", "-", "*", "+=", "-=", "==", "!=", "<", ">", "<=", ">=")
 
 
@@ -93,8 +93,8 @@ class Headers:
         codec = Codec(laid_out, self.members)
         nested = {field.type.message for field in message.fields if field.type.message is not None}
         stamp = _is_stamp(message)
-        if stamp and message.name != _DURATION:
-            nested.add(_DURATION)
+        if stamp and message.name == TIME:
+            nested.add(DURATION)
         name = struct_name(message.name)
         body = [*self._fields(message), *self._facts(message, laid_out, codec)]
         if stamp:
@@ -255,12 +255,12 @@ def _description(registry: Registry, name: TypeName) -> list[str]:
 
 def _is_stamp(message: Message) -> bool:
     """Whether it is a time or duration of ROS 2, with the fields that they have."""
-    return message.name in _STAMPS and [field.name for field in message.fields] == ["sec", "nanosec"]
+    return message.name in (TIME, DURATION) and [field.name for field in message.fields] == ["sec", "nanosec"]
 
 
 def _stamp_members(name: str, message: Message) -> Iterator[str | Block]:
     yield "/// Arithmetic is that of roslet::stamps."
-    yield "using Difference = %s;" % full_name(_DURATION, "ros2")
+    yield "using Difference = %s;" % full_name(DURATION, "ros2")
     yield "constexpr std::int64_t nanoseconds() const noexcept { return sec * roslet::stamps::second + nanosec; }"
     yield "static constexpr %s from_nanoseconds(std::int64_t value) noexcept {" % name
     yield [
