@@ -26,9 +26,23 @@ from roslet.idl import Message, Registry, TypeName
 
 COMPILER = "arm-none-eabi-g++"
 OPTIONS = "-Os -mcpu=cortex-m4 -mthumb"
-STRICT = ("-std=c++17", "-fno-exceptions", "-fno-rtti", "-ffunction-sections", "-fdata-sections", "-ffreestanding")
+STRICT = (
+    "-std=c++17",
+    "-fno-exceptions",
+    "-fno-rtti",
+    "-ffunction-sections",
+    "-fdata-sections",
+    "-ffreestanding",
+)
+COLUMNS = ("text", "data", "bss", "message", "buffer")
 TYPES = {
-    "ros1": ["std_msgs/String", "geometry_msgs/Twist", "sensor_msgs/Imu", "nav_msgs/Odometry", "sensor_msgs/LaserScan"],
+    "ros1": [
+        "std_msgs/String",
+        "geometry_msgs/Twist",
+        "sensor_msgs/Imu",
+        "nav_msgs/Odometry",
+        "sensor_msgs/LaserScan",
+    ],
     "ros2": [
         "std_msgs/msg/String",
         "geometry_msgs/msg/Twist",
@@ -93,7 +107,9 @@ def rows(arguments: argparse.Namespace, folder: pathlib.Path) -> list[dict[str, 
             names += registry.names("msg", given)
     at = {}
     if arguments.bounds is not None:
-        at = read_bounds(pathlib.Path(arguments.bounds).read_text(encoding="utf-8"), registry, arguments.bounds)
+        at = read_bounds(
+            pathlib.Path(arguments.bounds).read_text(encoding="utf-8"), registry, arguments.bounds
+        )
     bounds = Bounds(arguments.string_bound, arguments.sequence_bound, at)
     for path, text in headers(registry, names, bounds).items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
@@ -106,19 +122,20 @@ def rows(arguments: argparse.Namespace, folder: pathlib.Path) -> list[dict[str, 
             raise RosletError(f"{name} is no message; name its parts")
         unit = source(dialect, number, name)
         together += unit
-        text, data, bss = measure.sizes(unit)
+        sections = measure.sizes(unit)
         symbols = measure.symbols()
-        row = {"type": name.text(dialect), "text": text, "data": data, "bss": bss}
-        found.append({**row, "message": symbols[f"message{number}"], "buffer": symbols[f"buffer{number}"]})
-    text, data, bss = measure.sizes(together)
-    totals = {key: sum(row[key] for row in found) for key in ("message", "buffer")}
-    found.append({"type": "all of these", "text": text, "data": data, "bss": bss, **totals})
+        static = (symbols[f"message{number}"], symbols[f"buffer{number}"])
+        found.append(dict(zip(COLUMNS, (*sections, *static), strict=True), type=name.text(dialect)))
+    totals = (sum(row["message"] for row in found), sum(row["buffer"] for row in found))
+    found.append(dict(zip(COLUMNS, (*measure.sizes(together), *totals), strict=True), type="all of these"))
     return found
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description="Code and static memory of types in C++.")
-    parser.add_argument("names", nargs="*", metavar="NAME", help="a message, or a package; default: those of docs/cpp.md")
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help="a message, or a package; default: those of docs/cpp.md"
+    )
     parser.add_argument("--dialect", choices=("ros1", "ros2"), default="ros2")
     parser.add_argument("--types", metavar="DIR", action="append", default=[], help="load definitions")
     parser.add_argument("--compiler", default=COMPILER, help="default: %(default)s")
@@ -136,11 +153,10 @@ def main() -> int:
     if arguments.json:
         print(json.dumps(found))
         return 0
-    columns = ("text", "data", "bss", "message", "buffer")
-    print("| type | " + " | ".join(columns) + " |")
-    print("|---|" + "---:|" * len(columns))
+    print("| type | " + " | ".join(COLUMNS) + " |")
+    print("|---|" + "---:|" * len(COLUMNS))
     for row in found:
-        print(f"| {row['type']} | " + " | ".join([str(row[column]) for column in columns]) + " |")
+        print(f"| {row['type']} | " + " | ".join([str(row[column]) for column in COLUMNS]) + " |")
     return 0
 
 

@@ -1,19 +1,18 @@
-"""Builds fuzz_cpp.cpp for every bundled type of both dialects with clang++, and runs it with the arguments given.
+"""Builds fuzz_cpp.cpp with clang++ and runs it; the invariant is told there. An empty corpus gets good messages as seeds.
 
-`fuzz_cpp.py --smoke N` makes N runs with a few types, which compile in seconds. The folder for what is built is
-$ROSLET_FUZZ_BUILD, else a temporary one. Seeds are put into the corpus folder where one is named.
+python fuzz/fuzz_cpp.py [libFuzzer options] [corpus]     every bundled type of both dialects
+python fuzz/fuzz_cpp.py --smoke N                        N runs with a few types, which compile in seconds
 """
 
 from __future__ import annotations
 
-import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent / "src"), str(HERE.parent / "tests")]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "src"))
 
 from random_values import STYLES, Values, fill
 from roslet.gen import runtime
@@ -23,6 +22,7 @@ from roslet.gen.cpp_bounds import Bounds
 from roslet.gen.cpp_names import full_name, header_path
 from roslet.idl import Message, Registry
 
+HERE = pathlib.Path(__file__).resolve().parent
 SANITIZERS = "-fsanitize=fuzzer,address,undefined"
 # As small as still nests: with these the largest messages stay in a fuzzer's memory.
 BOUNDS = Bounds(string=20, sequence=3)
@@ -44,7 +44,11 @@ def write(folder: pathlib.Path, few: bool) -> list[tuple[str, str]]:
     includes, rows = [], []
     for dialect in ("ros1", "ros2"):
         registry = Registry(dialect, None)
-        names = list(FEW[dialect]) if few else [n for kind in ("msg", "srv", "action") for n in registry.names(kind)]
+        names = (
+            list(FEW[dialect])
+            if few
+            else [n for kind in ("msg", "srv", "action") for n in registry.names(kind)]
+        )
         write_headers(folder, registry, names, BOUNDS)
         found = {}
         for name in names:
@@ -54,7 +58,9 @@ def write(folder: pathlib.Path, few: bool) -> list[tuple[str, str]]:
                 types.append((dialect, one.name.text(dialect)))
                 includes.append(f'#include "{header_path(one.name, dialect)}"\n')
                 rows.append(f"    judge<{full_name(one.name, dialect)}>,\n")
-    (folder / "types.inc").write_text("".join(includes) + "static const Judge judges[] = {\n" + "".join(rows) + "};\n")
+    (folder / "types.inc").write_text(
+        "".join(includes) + "static const Judge judges[] = {\n" + "".join(rows) + "};\n"
+    )
     return types
 
 
@@ -77,11 +83,10 @@ def main() -> int:
     if smoke:
         arguments = [f"-runs={arguments[1]}", "-seed=1"]
     with tempfile.TemporaryDirectory() as temporary:
-        folder = pathlib.Path(os.environ.get("ROSLET_FUZZ_BUILD", temporary))
-        folder.mkdir(parents=True, exist_ok=True)
+        folder = pathlib.Path(temporary)
         types = write(folder, smoke)
         if smoke:
-            (folder / "corpus").mkdir(exist_ok=True)
+            (folder / "corpus").mkdir()
             arguments.append(str(folder / "corpus"))
         for argument in arguments:
             if not argument.startswith("-"):

@@ -35,7 +35,9 @@ def build(folder: pathlib.Path, dialect: Any) -> pathlib.Path:
     if dialect == "ros1":
         options.append("-DBOARD_ROS1")
     compiler = os.environ.get("CXX", "g++")
-    subprocess.run([compiler, *options, f"-I{folder}", str(HERE / "main.cpp"), "-o", str(program)], check=True)
+    subprocess.run(
+        [compiler, *options, f"-I{folder}", str(HERE / "main.cpp"), "-o", str(program)], check=True
+    )
     return program
 
 

@@ -202,7 +202,9 @@ def test_gen_cpp_writes_headers_and_then_leaves_them_alone(run: Run, tmp_path: p
     second = run("gen", "cpp", folder, "--types", MSGS)
     assert (second.code, second.out) == (0, "")
     assert "nothing has changed" in second.err
-    other = run("gen", "cpp", folder, "--types", MSGS, "--dialect", "ros2", "mros_comm_measure/Coordinate", "--json")
+    other = run(
+        "gen", "cpp", folder, "--types", MSGS, "--dialect", "ros2", "mros_comm_measure/Coordinate", "--json"
+    )
     assert str(folder / "mros_comm_measure" / "msg" / "Coordinate.hpp") in json.loads(other.out)
     assert str(folder / "roslet" / "message.hpp") not in json.loads(other.out)
 

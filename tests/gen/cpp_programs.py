@@ -100,7 +100,9 @@ class Build:
         self.messages = [one for one in found.values() if isinstance(one, Message)]
         self.numbers = {message.name: number for number, message in enumerate(self.messages)}
         paths = sorted(
-            str(path.relative_to(self.folder)) for path in self.folder.rglob("*.hpp") if path.parent.name != "roslet"
+            str(path.relative_to(self.folder))
+            for path in self.folder.rglob("*.hpp")
+            if path.parent.name != "roslet"
         )
         includes = "".join([f'#include "{path}"\n' for path in paths])
         (self.folder / "table.cpp").write_text(includes + self._table())
@@ -131,10 +133,10 @@ class Build:
         identity = "md5sum" if self.registry.dialect == "ros1" else "type_hash"
         lines = ['#include "cpp_harness.hpp"\n']
         for message in self.messages:
-            names = members(
-                struct_name(message.name),
-                dict.fromkeys([one.name for one in (*message.fields, *message.constants)]),
-            )
+            taken = [field.name for field in message.fields] + [
+                constant.name for constant in message.constants
+            ]
+            names = members(struct_name(message.name), dict.fromkeys(taken))
             calls = " ".join([f"v(m.{names[field.name]});" for field in message.fields])
             visitor, value = ("v", "m") if calls else ("", "")
             lines.append(
@@ -142,7 +144,10 @@ class Build:
                 f"static void each(Visitor& {visitor}, {self._full(message)}& {value}) {{ {calls} }} }};\n"
             )
         lines.append("static const Row rows[] = {\n")
-        lines += [f"    row<{self._full(message)}>({self._full(message)}::{identity}),\n" for message in self.messages]
+        lines += [
+            f"    row<{self._full(message)}>({self._full(message)}::{identity}),\n"
+            for message in self.messages
+        ]
         lines.append("};\nint main() { return serve(rows); }\n")
         return "".join(lines)
 
@@ -170,8 +175,7 @@ _SHARED: dict[Any, Build] = {}
 
 
 def shared(dialect: Any) -> Build:
-    """The build of every bundled type of a dialect, of the package `odd_msgs`, and of test_msgs where it is. All compilers
-    that are there begin with it at once."""
+    """The build of every bundled type of a dialect, of the package `odd_msgs`, and of test_msgs where it is."""
     if dialect not in _SHARED:
         registry = Registry(dialect, None)
         names: list[TypeName] = []
@@ -181,11 +185,16 @@ def shared(dialect: Any) -> Build:
         test_msgs = find("kilted-test-msgs") if dialect == "ros2" else None
         if test_msgs is not None:
             names += registry.load(test_msgs)
-        _SHARED[dialect] = build = Build(registry, names)
-        for compiler, source in JOBS:
-            if shutil.which(COMPILERS[compiler][0]) is not None:
-                build.start(compiler, source)
+        _SHARED[dialect] = Build(registry, names)
     return _SHARED[dialect]
+
+
+def begin() -> None:
+    """Let all compilers that are there begin with the shared builds: while one test waits for its own, others go on."""
+    for compiler, source in JOBS:
+        if shutil.which(COMPILERS[compiler][0]) is not None:
+            for dialect in ("ros1", "ros2"):
+                shared(dialect).start(compiler, source)
 
 
 class Program:
@@ -209,7 +218,9 @@ class Program:
         stdin.write(f"{command} {self.build.numbers[name]} {words}\n")
         stdin.flush()
         line = stdout.readline()
-        assert line.endswith("\n"), f"the program died with code {self.process.wait()}: {command} {name} {words}"
+        assert line.endswith("\n"), (
+            f"the program died with code {self.process.wait()}: {command} {name} {words}"
+        )
         return line.rstrip("\n")
 
     def close(self) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from gen.cpp_programs import BOUNDS, Program, require, shared, words
+from gen.cpp_programs import BOUNDS, Program, begin, require, shared, words
 from gen.test_bytes_equal_rclpy import masked
 from oracle import Oracle
 from peers import CACHE
@@ -31,6 +31,7 @@ NOT_FOREIGN = "odd_msgs"  # a package that no peer has
 def programs() -> Iterator[dict[Any, Program]]:
     """The programs of this machine: of what comes out of them every octet is checked for a step outside."""
     require(HOST)
+    begin()
     made: dict[Any, Program] = {dialect: Program(shared(dialect), HOST) for dialect in ("ros1", "ros2")}
     yield made
     for program in made.values():
@@ -99,7 +100,10 @@ def test_ros2_types_have_the_bytes_and_values_of_rclpy(programs: dict[Any, Progr
         data = written(programs["ros2"].ask("write", message, text))
         answer = oracle.ask(type=name, value=value, data=data.hex())
         if "error" in answer:
-            assert answer["error"].startswith("ModuleNotFoundError"), (case, answer)  # the wheels have no such package
+            assert answer["error"].startswith("ModuleNotFoundError"), (
+                case,
+                answer,
+            )  # the wheels have no such package
             unknown.add(name)
             continue
         theirs = bytes.fromhex(answer["data"])
@@ -115,7 +119,9 @@ def test_ros2_types_have_the_bytes_and_values_of_rclpy(programs: dict[Any, Progr
 
 
 @pytest.mark.parametrize("dialect", ["ros1", "ros2"])
-def test_types_that_no_peer_has_have_the_bytes_of_the_writer_in_python(dialect: Any, programs: dict[Any, Program]) -> None:
+def test_types_that_no_peer_has_have_the_bytes_of_the_writer_in_python(
+    dialect: Any, programs: dict[Any, Program]
+) -> None:
     compared = 0
     for message, value, text, case in cases(dialect):
         if message.name.package != NOT_FOREIGN:
@@ -123,7 +129,9 @@ def test_types_that_no_peer_has_have_the_bytes_of_the_writer_in_python(dialect: 
         mine = fill(runtime.message_class(dialect, message.name.text(dialect)), value)
         data = bytes(ros1.write(mine) if dialect == "ros1" else cdr.write(mine))
         assert written(programs[dialect].ask("write", message, text)) == data, case
-        assert programs[dialect].ask("read", message, data.hex()) == f"none - {len(data)} {text}".rstrip(), case
+        assert programs[dialect].ask("read", message, data.hex()) == f"none - {len(data)} {text}".rstrip(), (
+            case
+        )
         compared += 1
     assert compared >= 5 * len(STYLES)
 
@@ -170,7 +178,9 @@ def test_a_new_message_has_the_defaults_of_its_definition(dialect: Any, programs
 
 
 @pytest.mark.parametrize("dialect", ["ros1", "ros2"])
-def test_name_hash_and_definition_are_those_that_peers_compare(dialect: Any, programs: dict[Any, Program]) -> None:
+def test_name_hash_and_definition_are_those_that_peers_compare(
+    dialect: Any, programs: dict[Any, Program]
+) -> None:
     build = shared(dialect)
     for message in build.messages:
         name, identity, _, coded = programs[dialect].ask("facts", message).split(" ")

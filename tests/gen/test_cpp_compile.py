@@ -7,9 +7,14 @@ from typing import Any
 
 import pytest
 
-from gen.cpp_programs import COMPILERS, JOBS, require, shared
+from gen.cpp_programs import COMPILERS, JOBS, begin, require, shared
 
 pytestmark = pytest.mark.timeout(400)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def begun() -> None:
+    begin()
 
 
 @pytest.mark.parametrize("dialect", ["ros1", "ros2"])
@@ -32,7 +37,9 @@ def test_nothing_is_called_but_memcpy_and_memset(compiler: str) -> None:
     assert called <= {"memcpy", "memset", "memmove", "__aeabi_memcpy", "__aeabi_memset"}
     command = ["arm-none-eabi-size", "-A", str(build.output(compiler, "table"))]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
-    sizes = {line.split()[0]: int(line.split()[1]) for line in done.stdout.splitlines() if line.startswith(".")}
+    sizes = {
+        line.split()[0]: int(line.split()[1]) for line in done.stdout.splitlines() if line.startswith(".")
+    }
     assert (sizes[".data"], sizes[".bss"]) == (0, 0)
     assert not [section for section in sizes if section.startswith((".init_array", ".ARM.extab"))]
 

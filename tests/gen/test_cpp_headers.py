@@ -76,7 +76,11 @@ def test_the_code_of_a_small_message_is_this() -> None:
 
 
 def test_the_text_is_the_same_every_time_and_written_only_if_it_changed(tmp_path: pathlib.Path) -> None:
-    names = ["sensor_msgs/msg/Imu", "example_interfaces/srv/AddTwoInts", "example_interfaces/action/Fibonacci"]
+    names = [
+        "sensor_msgs/msg/Imu",
+        "example_interfaces/srv/AddTwoInts",
+        "example_interfaces/action/Fibonacci",
+    ]
     registry = Registry("ros2", None)
     first = write_headers(tmp_path / "one", registry, names)
     assert first and write_headers(tmp_path / "one", registry, names) == []
@@ -93,7 +97,8 @@ def test_no_comment_of_a_definition_is_in_its_header(dialect: Any) -> None:
         text = path.read_text(encoding="utf-8")
         assert "a comment that no header may carry" not in text
         if path.parent.name != "roslet":
-            assert not [line for line in text.splitlines() if line.lstrip().startswith(('"#', "#")) and "#include" not in line and line != "#pragma once"]
+            marks = [line for line in text.splitlines() if line.lstrip().startswith(('"#', "#"))]
+            assert {line.split(" ")[0] for line in marks} <= {"#pragma", "#include"}
 
 
 def test_what_is_made_of_types_includes_them_and_nothing_else() -> None:
@@ -128,7 +133,9 @@ def test_two_things_of_one_name_are_refused_in_ros1(tmp_path: pathlib.Path) -> N
         headers(registry, [TypeName("pkg", "msg", "Twice"), TypeName("pkg", "srv", "Twice")])
 
 
-def test_bounds_come_from_the_definition_then_from_the_field_then_from_the_default(tmp_path: pathlib.Path) -> None:
+def test_bounds_come_from_the_definition_then_from_the_field_then_from_the_default(
+    tmp_path: pathlib.Path,
+) -> None:
     registry = defined(
         tmp_path,
         "ros2",
@@ -195,14 +202,13 @@ def test_a_wrong_line_of_bounds_is_told_with_its_place(line: str, complaint: str
 def test_bounds_of_nothing_and_messages_beyond_32_bits_are_refused(tmp_path: pathlib.Path) -> None:
     with pytest.raises(ValueError, match="the bound of sequences is from 1 to 4294967295, not 0"):
         Bounds(sequence=0)
-    with pytest.raises(ValueError, match="the bound of std_msgs/msg/Header.frame_id"):
+    with pytest.raises(ValueError, match=r"the bound of std_msgs/msg/Header\.frame_id"):
         Bounds(at={(HEADER, "frame_id"): 0})
     with pytest.raises(ValueError, match="at most 4294967295: lower its bounds"):
         headers(Registry("ros2", None), ["sensor_msgs/msg/PointCloud2"], Bounds(sequence=400_000_000))
     registry = defined(tmp_path, "ros2", Default='string text "more than five"\nint8[] some [1, 2, 3]\n')
-    with pytest.raises(ValueError, match=r"Default\.text: its default has 14 units, its bound is 5") as caught:
+    with pytest.raises(ValueError, match=r"Default\.text: its default has 14 units, its bound is 5"):
         headers(registry, ["pkg/msg/Default"], Bounds(string=5))
-    del caught
     with pytest.raises(ValueError, match=r"Default\.some: its default has 3 elements, its bound is 2"):
         headers(registry, ["pkg/msg/Default"], Bounds(sequence=2))
 
@@ -251,7 +257,9 @@ def test_errors_name_the_field(tmp_path: pathlib.Path) -> None:
 
     def read(name: str, octets: str) -> str:
         kind, short = name.split("/")
-        return " ".join(program.ask("read", TypeName(kind, "msg", short), octets.replace(" ", "")).split(" ")[:3])
+        return " ".join(
+            program.ask("read", TypeName(kind, "msg", short), octets.replace(" ", "")).split(" ")[:3]
+        )
 
     stamp, frame = "00010000 01000000 02000000", "02000000 6100"
     assert read("std_msgs/Header", f"{stamp} {frame}") == "none - 18"
@@ -264,13 +272,20 @@ def test_errors_name_the_field(tmp_path: pathlib.Path) -> None:
     assert read("std_msgs/Header", f"{stamp} 020000") == "truncated frame_id 4"
     assert read("std_msgs/Header", f"{stamp} 02000000 61") == "truncated frame_id 16"
     assert read("std_msgs/Header", f"{stamp} ffffffff 61") == "too_long frame_id 16"
-    assert read("std_msgs/Header", f"{stamp} {BOUNDS.string + 2:02x}".replace("25a", "5a020000")) == "too_long frame_id 16"
+    assert (
+        read("std_msgs/Header", f"{stamp} {BOUNDS.string + 2:02x}".replace("25a", "5a020000"))
+        == "too_long frame_id 16"
+    )
     assert read("std_msgs/Header", f"{stamp} 00000000") == "none - 16"  # as some write an empty string
     head = f"{stamp} 01000000 000000 00"
     assert read("geometry_msgs/PoseArray", f"{head} 07000000") == "too_long poses 24"
-    assert read("geometry_msgs/PoseArray", f"{head} 01000000 {'00' * 23}") == "truncated poses[].position.z 24"
+    assert (
+        read("geometry_msgs/PoseArray", f"{head} 01000000 {'00' * 23}") == "truncated poses[].position.z 24"
+    )
     assert read("sensor_msgs/JointState", f"{head} 01000000 02000000 61") == "truncated name[] 28"
-    assert read("example_interfaces/WString", "00010000 02000000 41000000 42000100") == "not_a_character data 16"
+    assert (
+        read("example_interfaces/WString", "00010000 02000000 41000000 42000100") == "not_a_character data 16"
+    )
     assert read("example_interfaces/WString", "00000000 00000001 00000041") == "none - 12"
     assert read("std_msgs/Bool", "00010000 02") == "none - 5"
     ask = program.ask
@@ -287,12 +302,25 @@ def test_what_users_write_compiles_and_holds(compiler: str, tmp_path: pathlib.Pa
     require(compiler)
     registry = Registry("ros2", None)
     registry.load(ODD / "ros2")
-    names = ["odd_msgs/msg/Odd", "odd_msgs/srv/Ask", "geometry_msgs/msg/PoseArray", "builtin_interfaces/msg/Time"]
+    names = [
+        "odd_msgs/msg/Odd",
+        "odd_msgs/srv/Ask",
+        "geometry_msgs/msg/PoseArray",
+        "builtin_interfaces/msg/Time",
+    ]
     write_headers(tmp_path, registry, names, BOUNDS)
     write_headers(tmp_path, Registry("ros1", None), ["std_msgs/String"], BOUNDS)
     options = ["g++", "-O2"] if compiler == "g++" else COMPILERS[compiler]
     more = ["-Wconversion", "-Wshadow"]
-    command = [*options, *STRICT, *more, f"-I{tmp_path}", str(HERE / "cpp_unit.cpp"), "-o", str(tmp_path / "unit")]
+    command = [
+        *options,
+        *STRICT,
+        *more,
+        f"-I{tmp_path}",
+        str(HERE / "cpp_unit.cpp"),
+        "-o",
+        str(tmp_path / "unit"),
+    ]
     made = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (made.returncode, made.stderr) == (0, "")
     done = subprocess.run([str(tmp_path / "unit")], capture_output=True, text=True, check=False)
@@ -305,7 +333,9 @@ def test_a_static_message_costs_no_image_of_its_sequences(tmp_path: pathlib.Path
     (tmp_path / "one.cpp").write_text('#include "nav_msgs/msg/Path.hpp"\nnav_msgs::msg::Path path;\n')
     command = [*COMPILERS["Cortex-M4"], *STRICT, f"-I{tmp_path}", "-c", "one.cpp", "-o", "one.o"]
     subprocess.run(command, cwd=tmp_path, check=True)
-    done = subprocess.run(["arm-none-eabi-size", "one.o"], cwd=tmp_path, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        ["arm-none-eabi-size", "one.o"], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
     text, data, bss = map(int, done.stdout.splitlines()[1].split()[:3])
     assert (text, data) == (0, 0)
     assert 32 * 136 < bss < 32 * 160 + 100

@@ -42,7 +42,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         "types json",
     )
     cpp.description = (
-        "Write messages as C++17 headers without heap, exceptions or RTTI: a header for each type, and roslet/message.hpp.\n\n"
+        "Write messages as C++17 headers that need no heap, exceptions or RTTI: a header for each type,\n"
+        "and roslet/message.hpp.\n\n"
         "Strings and sequences have bounds: those of the definition, else those of the options. A file of bounds\n"
         "has lines such as `std_msgs/Header.frame_id 16`; `names[]` are the strings in the array `names`.\n"
         "Files that would not change are left alone."

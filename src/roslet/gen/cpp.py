@@ -34,7 +34,9 @@ def support_header() -> str:
         return file.read()
 
 
-def headers(registry: Registry, names: Iterable[TypeName | str], bounds: Bounds | None = None) -> dict[str, str]:
+def headers(
+    registry: Registry, names: Iterable[TypeName | str], bounds: Bounds | None = None
+) -> dict[str, str]:
     """The headers of `names` and of all they are made of: path to text.
 
     A name may be that of a message, service or action, as `Registry.interface` takes it. Raises what that raises, ValueError
@@ -52,7 +54,9 @@ def headers(registry: Registry, names: Iterable[TypeName | str], bounds: Bounds 
             continue  # in ROS 1 an action is its messages
         path = header_path(interface.name, registry.dialect)
         if path in files:
-            raise Unsupported(f"{interface.name.text(registry.dialect)} is two things: in C++ they would have one name")
+            raise Unsupported(
+                f"{interface.name.text(registry.dialect)} is two things: in C++ they would have one name"
+            )
         files[path] = spelled.text(interface)
     return files
 

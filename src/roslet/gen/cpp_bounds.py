@@ -24,7 +24,7 @@ class Bounds:
     """How much room variable parts have: `string` (octets) and `sequence` (elements) where the definition has no bound,
     and `at` for single ones: (type, field) -> bound, where `field[]` stands for the strings in an array.
 
-    A bound of `at` may be less than the definition's, which peers know; never more. Raises ValueError for a bound of nothing.
+    A bound of `at` may be less than the definition's, which peers know; never more. Raises ValueError for one below 1.
     """
 
     def __init__(
@@ -68,8 +68,8 @@ class Bounds:
 def read_bounds(text: str, registry: Registry, file: str) -> dict[tuple[TypeName, str], int]:
     """What `Bounds.at` takes, from lines such as `std_msgs/Header.frame_id 32`; `#` begins a comment.
 
-    Raises DefinitionError, with the place in `file`, for a line that is none, and for a type or a string or sequence that there
-    is not.
+    Raises DefinitionError, with the place in `file`, for a line that is none, and for a type or field that has no bound or is
+    not there.
     """
     found: dict[tuple[TypeName, str], int] = {}
     for number, line in enumerate(text.split("\n"), 1):

@@ -50,7 +50,11 @@ class Codec:
                 self.declared = before
                 if not inside:
                     continue  # empty messages in ROS 1, which have no octets
-                unused = "" if item + "." in render(inside) or "%s, " % item in render(inside) else "[[maybe_unused]] "
+                unused = (
+                    ""
+                    if item + "." in render(inside) or "%s, " % item in render(inside)
+                    else "[[maybe_unused]] "
+                )
                 yield "for (%sauto& %s : %s) {" % (unused, item, expression)
                 yield inside
                 yield "}"

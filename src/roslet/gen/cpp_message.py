@@ -85,7 +85,9 @@ class Headers:
             raise ValueError(f"{laid_out.name}: a part has no bound")
         maximum += 0 if self.dialect == "ros1" else ENCAPSULATION
         if maximum > LARGEST:
-            raise ValueError(f"{laid_out.name} may have {maximum} octets, at most {LARGEST}: lower its bounds")
+            raise ValueError(
+                f"{laid_out.name} may have {maximum} octets, at most {LARGEST}: lower its bounds"
+            )
         return maximum
 
     def _message(self, message: Message) -> str:
@@ -200,7 +202,9 @@ class Headers:
         return self._file(name, set(attributes.values()), lines)
 
     def _file(self, name: TypeName, nested: set[TypeName], lines: list[str | Block]) -> str:
-        includes = ['#include "%s"' % path for path in sorted([header_path(one, self.dialect) for one in nested])]
+        includes = [
+            '#include "%s"' % path for path in sorted([header_path(one, self.dialect) for one in nested])
+        ]
         space = namespace(name, self.dialect)
         return render(
             [
@@ -289,7 +293,9 @@ def _default(message: Message, field: Field) -> str:
     values = value if isinstance(value, tuple) else (value,)
     array = kind.array
     if array is not None and len(values) > (array.size or 0):
-        raise ValueError(f"{message.name}.{field.name}: its default has {len(values)} elements, its bound is {array.size}")
+        raise ValueError(
+            f"{message.name}.{field.name}: its default has {len(values)} elements, its bound is {array.size}"
+        )
     for one in values:
         if isinstance(one, str) and kind.string_bound is not None:
             units = one.encode("utf-8" if primitive == "string" else "utf-16-le", "surrogateescape")

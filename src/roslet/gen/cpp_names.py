@@ -10,18 +10,23 @@ if TYPE_CHECKING:
 
     from roslet.idl.records import Dialect, FieldType, TypeName, Value
 
-KEYWORDS = frozenset(
-    """alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t char32_t class compl concept const
-    const_cast consteval constexpr constinit continue co_await co_return co_yield decltype default delete do double
-    dynamic_cast else enum explicit export extern false float for friend goto if inline int long mutable namespace new noexcept
-    not not_eq nullptr operator or or_eq private protected public register reinterpret_cast requires return short signed sizeof
-    static static_assert static_cast struct switch template this thread_local throw true try typedef typeid typename union
-    unsigned using virtual void volatile wchar_t while xor xor_eq""".split()
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+KEYWORDS = _words(
+    """alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t char32_t class compl concept
+    const const_cast consteval constexpr constinit continue co_await co_return co_yield decltype default delete do double
+    dynamic_cast else enum explicit export extern false float for friend goto if inline int long mutable namespace new
+    noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast requires return short
+    signed sizeof static static_assert static_cast struct switch template this thread_local throw true try typedef typeid
+    typename union unsigned using virtual void volatile wchar_t while xor xor_eq"""
 )
 
-MEMBERS = frozenset(
+MEMBERS = _words(
     """Difference code definition dds_type_name deserialize deserialize_body field_count field_name from_nanoseconds
-    max_serialized_size md5sum nanoseconds serialize serialize_body type_hash type_name""".split()
+    max_serialized_size md5sum nanoseconds serialize serialize_body type_hash type_name"""
 )
 """What the struct of a message has beside its fields and constants."""
 
@@ -129,7 +134,9 @@ def _integer(value: int, primitive: str) -> str:
     if primitive.startswith("u"):
         return "%d%s" % (value, {64: "ULL", 32: "U"}.get(bits, ""))
     suffix = "LL" if bits == 64 else ""
-    if value == -(1 << 63) or value == -(1 << 31):  # there are no negative literals: the number alone would not fit
+    if value == -(1 << 63) or value == -(
+        1 << 31
+    ):  # there are no negative literals: the number alone would not fit
         return "-%d%s - 1" % (-value - 1, suffix)
     return "%d%s" % (value, suffix)
 
