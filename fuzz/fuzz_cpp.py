@@ -7,6 +7,7 @@ python fuzz/fuzz_cpp.py --smoke N                        N runs with a few types
 from __future__ import annotations
 
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -79,6 +80,9 @@ def seed(corpus: pathlib.Path, types: list[tuple[str, str]]) -> None:
 
 def main() -> int:
     arguments = sys.argv[1:]
+    if shutil.which("clang++") is None:
+        print("fuzz_cpp.py: no clang++ here; `make peers` installs it", file=sys.stderr)
+        return 1
     smoke = arguments[:1] == ["--smoke"]
     if smoke:
         arguments = [f"-runs={arguments[1]}", "-seed=1"]
