@@ -62,7 +62,7 @@ def source(dialect: Any, number: int, name: TypeName) -> str:
     return (
         f'#include "{header_path(name, dialect)}"\n'
         f"{kind} message{number};\n"
-        f"std::uint8_t buffer{number}[{kind}::max_serialized_size];\n"
+        f"std::uint8_t buffer{number}[{kind}::max_serialized_size + ({kind}::max_serialized_size == 0)];\n"
         f"std::size_t publish{number}() {{ return message{number}.serialize(buffer{number}).size; }}\n"
         f"bool receive{number}(std::size_t size) {{ return bool(message{number}.deserialize({{buffer{number}, size}})); }}\n"
     )

@@ -39,6 +39,8 @@ static_assert(std::is_same_v<decltype(Odd::class_), std::int8_t>);
 static_assert(std::is_same_v<decltype(Odd::new_), roslet::Sequence<std::uint8_t, 6>>);
 static_assert(std::is_same_v<decltype(Odd::few), roslet::Sequence<roslet::String<5>, 3>>);
 static_assert(std::is_same_v<decltype(Odd::definition_), roslet::String<600>>);
+static_assert(std::is_same_v<decltype(Odd::transfer_), std::int32_t>);
+static_assert(!std::is_convertible_v<int, decltype(Odd::new_)>);
 static_assert(std::is_same_v<decltype(Odd::pair), roslet::Array<odd_msgs::msg::Nested, 2>>);
 static_assert(std::is_same_v<odd_msgs::srv::Ask::Request, odd_msgs::srv::Ask_Request>);
 
@@ -61,6 +63,7 @@ void strings() {
     CHECK(!text.resize(6) && text.resize(1) && text == "a");
     text = "new";
     CHECK(text == "new");
+    CHECK((text == roslet::String<9>("new") && text != roslet::String<3>("old")));
     text.clear();
     CHECK(text.empty() && text == "");
 }

@@ -58,7 +58,7 @@ def test_the_code_of_a_small_message_is_this() -> None:
     )
     assert text.endswith(
         "template <class Codec, class Self>\n"
-        "bool Coordinate::code(Codec& codec, Self& self) noexcept {\n"
+        "bool Coordinate::transfer(Codec& codec, Self& self) noexcept {\n"
         "    auto* at = codec.run(roslet::run<1, 0, 20, 4, 8, 12, 16>);\n"
         "    if (at == nullptr) {\n"
         "        return false;\n"
@@ -215,7 +215,7 @@ def test_bounds_of_nothing_and_messages_beyond_32_bits_are_refused(tmp_path: pat
 
 def test_a_run_of_more_than_65535_octets_is_taken_in_pieces(tmp_path: pathlib.Path) -> None:
     registry = defined(tmp_path, "ros1", Large="int8[70000] a\nint16 b\nint8[70000] c\nint8[10] d\nint32 e\n")
-    code = headers(registry, ["pkg/Large"])["pkg/Large.hpp"].partition("::code(")[2]
+    code = headers(registry, ["pkg/Large"])["pkg/Large.hpp"].partition("::transfer(")[2]
     runs = [line.strip() for line in code.splitlines() if "codec.run(" in line]
     assert runs == [
         "auto* at = codec.run(roslet::run<1, 0, 70000>);",

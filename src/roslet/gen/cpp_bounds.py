@@ -68,8 +68,8 @@ class Bounds:
 def read_bounds(text: str, registry: Registry, file: str) -> dict[tuple[TypeName, str], int]:
     """What `Bounds.at` takes, from lines such as `std_msgs/Header.frame_id 32`; `#` begins a comment.
 
-    Raises DefinitionError, with the place in `file`, for a line that is none, and for a type or field that is not there or has
-    no bound.
+    Raises DefinitionError, with the place in `file`, for a line that is none, and for a type or field that is not there, or
+    has no bound.
     """
     found: dict[tuple[TypeName, str], int] = {}
     for number, line in enumerate(text.split("\n"), 1):

@@ -24,7 +24,7 @@ _FAIL: list[str | Block] = [["return false;"], "}"]
 
 
 class Codec:
-    """Spells the body of `code`. Afterwards `fields` are the names of all fields, whose places are their numbers."""
+    """Spells the body of `transfer`. Afterwards `fields` are the names of all fields, whose places are their numbers."""
 
     def __init__(self, layout: Layout, members: Members) -> None:
         self.members = members
@@ -44,18 +44,14 @@ class Codec:
                 item = "item" if depth == 0 else "item%d" % (depth + 1)
                 expression = scope.expression(operation.path)
                 before = self.declared
-                inside = list(
-                    self._operations(operation.element, item, scope.label(operation.path) + "[]", depth + 1)
-                )
+                label_inside = scope.label(operation.path) + "[]"
+                inside = list(self._operations(operation.element, item, label_inside, depth + 1))
                 self.declared = before
                 if not inside:
                     continue  # empty messages in ROS 1, which have no octets
-                unused = (
-                    ""
-                    if item + "." in render(inside) or "%s, " % item in render(inside)
-                    else "[[maybe_unused]] "
-                )
-                yield "for (%sauto& %s : %s) {" % (unused, item, expression)
+                text = render(inside)
+                used = item + "." in text or item + ", " in text
+                yield "for (%sauto& %s : %s) {" % ("" if used else "[[maybe_unused]] ", item, expression)
                 yield inside
                 yield "}"
 

@@ -110,7 +110,7 @@ class Headers:
             "",
             *_field_name(name, codec),
             "",
-            *_code(name, codec),
+            *_transfer(name, codec),
         ]
         if stamp:
             operators = ", ".join(["roslet::stamps::operator" + operator for operator in _OPERATORS])
@@ -179,7 +179,7 @@ class Headers:
         yield ""
         yield "/// Move every field to or from the octets of `codec`, a writer or a reader; false at the first error."
         yield "template <class Codec, class Self>"
-        yield "static bool code(Codec& codec, Self& self) noexcept;"
+        yield "static bool transfer(Codec& codec, Self& self) noexcept;"
 
     def _holder(self, interface: Service | Action) -> str:
         """A service or action: what it is made of, and what a client and a server compare."""
@@ -324,12 +324,12 @@ def _field_name(name: str, codec: Codec) -> Iterator[str | Block]:
     yield "}"
 
 
-def _code(name: str, codec: Codec) -> Iterator[str | Block]:
+def _transfer(name: str, codec: Codec) -> Iterator[str | Block]:
     text = render(codec.body)
     codec_name = " codec" if "codec." in text else ""
     self_name = " self" if "self." in text else ""
     yield "template <class Codec, class Self>"
-    yield "bool %s::code(Codec&%s, Self&%s) noexcept {" % (name, codec_name, self_name)
+    yield "bool %s::transfer(Codec&%s, Self&%s) noexcept {" % (name, codec_name, self_name)
     yield codec.body
     yield "}"
 

@@ -25,8 +25,8 @@ KEYWORDS = _words(
 )
 
 MEMBERS = _words(
-    """Difference code definition dds_type_name deserialize deserialize_body field_count field_name from_nanoseconds
-    max_serialized_size md5sum nanoseconds serialize serialize_body type_hash type_name"""
+    """definition dds_type_name deserialize deserialize_body field_count field_name max_serialized_size md5sum serialize
+    serialize_body transfer type_hash type_name"""
 )
 """What the struct of a message has beside its fields and constants."""
 

@@ -39,7 +39,7 @@ constexpr const char* name(Error error) noexcept {
 inline constexpr std::uint16_t no_field = 0xFFFF;
 
 /// What serialize and deserialize return; true if all went well.
-struct Result {
+struct [[nodiscard]] Result {
     Error error;
     std::uint16_t field;  ///< of an error: the number of the field; the message's `field_name(field)` is its name
     std::size_t size;     ///< octets written or read; of an error: those before the trouble
@@ -130,20 +130,30 @@ public:
     constexpr void clear() noexcept { resize(0); }
 
     /// Whether it is the text that ends with a zero.
-    constexpr bool operator==(const Char* text) const noexcept {
-        if (length(text) != size_) {
+    constexpr bool operator==(const Char* text) const noexcept { return equals(text, length(text)); }
+    constexpr bool operator!=(const Char* text) const noexcept { return !(*this == text); }
+    template <std::size_t M>
+    constexpr bool operator==(const Text<Char, M>& other) const noexcept {
+        return equals(other.data(), other.size());
+    }
+    template <std::size_t M>
+    constexpr bool operator!=(const Text<Char, M>& other) const noexcept {
+        return !(*this == other);
+    }
+
+private:
+    constexpr bool equals(const Char* text, std::size_t size) const noexcept {
+        if (size != size_) {
             return false;
         }
-        for (std::size_t index = 0; index < size_; ++index) {
+        for (std::size_t index = 0; index < size; ++index) {
             if (characters_[index] != text[index]) {
                 return false;
             }
         }
         return true;
     }
-    constexpr bool operator!=(const Char* text) const noexcept { return !(*this == text); }
 
-private:
     static constexpr std::size_t length(const Char* text) noexcept {
         std::size_t size = 0;
         while (text[size] != Char{}) {
@@ -200,9 +210,12 @@ public:
     constexpr Sequence() noexcept = default;
 
     /// From elements, which must fit.
-    template <class First, class... More, class = std::enable_if_t<!std::is_same_v<std::decay_t<First>, Sequence>>>
-    constexpr Sequence(const First& first, const More&... more) noexcept : size_(1 + sizeof...(More)), storage_(first, more...) {
-        static_assert(1 + sizeof...(More) <= N, "more elements than the sequence's bound");
+    template <class First, class = std::enable_if_t<!std::is_same_v<First, Sequence>>>
+    constexpr explicit Sequence(const First& first) noexcept : size_(1), storage_(first) {}
+    template <class First, class Second, class... More>
+    constexpr Sequence(const First& first, const Second& second, const More&... more) noexcept
+        : size_(2 + sizeof...(More)), storage_(first, second, more...) {
+        static_assert(2 + sizeof...(More) <= N, "more elements than the sequence's bound");
     }
 
     /// The most elements that it holds.
@@ -425,7 +438,7 @@ struct Run {
     std::uint8_t align;   ///< the position before is first made a multiple of it
 };
 
-/// The run that begins with field `Field`; `Numbers` are the numbers of the other fields less that, `Ends` as in Run.
+/// The run of `Size` octets that begins with field `Field`; `Ends` as in Run.
 template <std::size_t Align, std::uint16_t Field, std::uint32_t Size, std::uint16_t... Ends>
 struct RunOf {
     static constexpr std::uint16_t ends[sizeof...(Ends) + 1] = {Ends..., 0};
@@ -777,14 +790,14 @@ namespace ros1 {
 template <class Message>
 inline Result serialize(const Message& message, Span<std::uint8_t> buffer) noexcept {
     Writer<Ros1> writer(buffer);
-    Message::code(writer, message);
+    Message::transfer(writer, message);
     return writer.result();
 }
 
 template <class Message>
 inline Result deserialize(Message& message, Span<const std::uint8_t> buffer) noexcept {
     Reader<Ros1> reader(buffer, false);
-    Message::code(reader, message);
+    Message::transfer(reader, message);
     return reader.result();
 }
 
@@ -799,14 +812,14 @@ inline constexpr std::size_t header_size = 4;
 template <class Message>
 inline Result serialize_body(const Message& message, Span<std::uint8_t> buffer) noexcept {
     Writer<Cdr> writer(buffer);
-    Message::code(writer, message);
+    Message::transfer(writer, message);
     return writer.result();
 }
 
 template <class Message>
 inline Result deserialize_body(Message& message, Span<const std::uint8_t> buffer, bool big_endian) noexcept {
     Reader<Cdr> reader(buffer, big_endian);
-    Message::code(reader, message);
+    Message::transfer(reader, message);
     return reader.result();
 }
 
