@@ -45,7 +45,7 @@ def headers(
     interfaces: dict[str, Interface] = {}
     for name in names:
         collect(registry, registry.interface(name), interfaces)
-    if any(interface.name == TIME for interface in interfaces.values()):
+    if registry.dialect == "ros2" and any(interface.name == TIME for interface in interfaces.values()):
         collect(registry, registry.interface(DURATION), interfaces)  # which is the difference of two times
     spelled = Headers(registry, Bounds() if bounds is None else bounds)
     files = {SUPPORT: support_header()}

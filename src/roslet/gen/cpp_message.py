@@ -60,10 +60,6 @@ class Headers:
             return self._message(self._bounded(interface.name))
         return self._holder(interface)
 
-    def maximum(self, name: TypeName) -> int:
-        """The octets of the longest message, as `max_serialized_size` has them."""
-        return self._maximum(self._layout(self._bounded(name)))
-
     def members(self, name: TypeName) -> dict[str, str]:
         """The names of a message's fields and constants, and of the members that they are."""
         if name not in self._members:
@@ -259,7 +255,8 @@ def _description(registry: Registry, name: TypeName) -> list[str]:
 
 def _is_stamp(message: Message) -> bool:
     """Whether it is a time or duration of ROS 2, with the fields that they have."""
-    return message.name in (TIME, DURATION) and [field.name for field in message.fields] == ["sec", "nanosec"]
+    is_one = message.dialect == "ros2" and message.name in (TIME, DURATION)
+    return is_one and [field.name for field in message.fields] == ["sec", "nanosec"]
 
 
 def _stamp_members(name: str, message: Message) -> Iterator[str | Block]:
