@@ -3,8 +3,8 @@
 python benchmarks/cpp_sizes.py                                       the types of docs/cpp.md
 python benchmarks/cpp_sizes.py --dialect ros1 sensor_msgs --json     of a package, in JSON
 
-Each type is compiled alone: the text has what of the support header it uses, so that several types together take less than
-the sum; the last line says what. Nothing is linked: memcpy and memset come to it.
+Each type is compiled alone: the text has what of the support header it uses, which several types share; the last line says
+what all take together. Nothing is linked: memcpy and memset come to it.
 """
 
 from __future__ import annotations

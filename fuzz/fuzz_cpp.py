@@ -96,7 +96,14 @@ def main() -> int:
             if not argument.startswith("-"):
                 seed(pathlib.Path(argument), types)
         program = folder / "fuzz_cpp"
-        options = ["-std=c++17", "-O1", "-gline-tables-only", SANITIZERS, "-fno-sanitize=vptr", "-fno-sanitize-recover=all"]
+        options = [
+            "-std=c++17",
+            "-O1" if smoke else "-O0",
+            "-gline-tables-only",
+            SANITIZERS,
+            "-fno-sanitize=vptr",
+            "-fno-sanitize-recover=all",
+        ]
         more = ["-fno-exceptions", "-fno-rtti", f"-I{folder}", str(HERE / "fuzz_cpp.cpp"), "-o", str(program)]
         subprocess.run(["clang++", *options, *more], check=True)
         return subprocess.run([str(program), "-max_len=4096", *arguments], check=False).returncode

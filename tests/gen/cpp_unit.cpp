@@ -133,6 +133,9 @@ void errors() {
     CHECK(std::string(roslet::name(result.error)) == "truncated");
     CHECK(poses.deserialize({buffer, whole}) && poses.poses.size() == 2);
 
+    result = poses.deserialize(buffer);  // what is behind the message is left alone
+    CHECK(result && result.size == whole);
+
     buffer[1] = 3;  // parameter lists
     result = poses.deserialize({buffer, whole});
     CHECK(result.error == roslet::Error::bad_encapsulation && result.field == roslet::no_field);

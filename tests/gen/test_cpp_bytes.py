@@ -21,7 +21,7 @@ from roslet.gen import runtime
 from roslet.idl import Message, Registry, TypeName, md5sum, type_hash
 from roslet.wire import cdr, ros1
 
-pytestmark = pytest.mark.timeout(400)
+pytestmark = pytest.mark.timeout(900)
 HOST = "clang++ with sanitizers"
 ARM = "32-bit ARM Linux"
 NOT_FOREIGN = "odd_msgs"  # a package that no peer has

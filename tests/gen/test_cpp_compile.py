@@ -9,7 +9,7 @@ import pytest
 
 from gen.cpp_programs import COMPILERS, JOBS, begin, require, shared
 
-pytestmark = pytest.mark.timeout(400)
+pytestmark = pytest.mark.timeout(900)
 
 
 @pytest.fixture(autouse=True, scope="module")

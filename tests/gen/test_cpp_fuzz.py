@@ -12,7 +12,7 @@ from gen.cpp_programs import require
 from peers import ROOT
 
 
-@pytest.mark.timeout(300)
+@pytest.mark.timeout(900)
 def test_the_fuzz_target_finds_nothing() -> None:
     require("clang++ with sanitizers")
     command = [sys.executable, str(ROOT / "fuzz" / "fuzz_cpp.py"), "--smoke", "100000"]

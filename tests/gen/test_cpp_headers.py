@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
+import os
 import pathlib
 import subprocess
+import sys
 from typing import Any
 
 import pytest
@@ -248,7 +251,7 @@ def test_octets_that_are_no_text_stay_what_they_are() -> None:
     assert quoted(b"\xff\n\t".decode("utf-8", "surrogateescape")) == '"\\377\\n\\t"'
 
 
-@pytest.mark.timeout(400)
+@pytest.mark.timeout(900)
 def test_errors_name_the_field(tmp_path: pathlib.Path) -> None:
     """Literal octets, and what is wrong with them."""
     compiler = "clang++ with sanitizers"
@@ -296,7 +299,7 @@ def test_errors_name_the_field(tmp_path: pathlib.Path) -> None:
     program.close()
 
 
-@pytest.mark.timeout(200)
+@pytest.mark.timeout(900)
 @pytest.mark.parametrize("compiler", ["g++", "clang++ with sanitizers"])
 def test_what_users_write_compiles_and_holds(compiler: str, tmp_path: pathlib.Path) -> None:
     require(compiler)
@@ -339,3 +342,24 @@ def test_a_static_message_costs_no_image_of_its_sequences(tmp_path: pathlib.Path
     text, data, bss = map(int, done.stdout.splitlines()[1].split()[:3])
     assert (text, data) == (0, 0)
     assert 32 * 136 < bss < 32 * 160 + 100
+
+
+def test_the_sizes_of_a_type_are_measured() -> None:
+    require("Cortex-M4")
+    command = [
+        sys.executable,
+        str(HERE.parents[1] / "benchmarks" / "cpp_sizes.py"),
+        "--json",
+        "std_msgs/msg/String",
+    ]
+    environment = {**os.environ, "PYTHONPATH": str(HERE.parents[1] / "src")}
+    done = subprocess.run(
+        [*command, "geometry_msgs/msg/Quaternion"], capture_output=True, env=environment, check=True
+    )
+    text, quaternion, both = json.loads(done.stdout)
+    assert (text["type"], text["message"], text["buffer"]) == ("std_msgs/msg/String", 66, 4 + 4 + 65)
+    assert (text["data"], text["bss"]) == (0, 66 + 73)
+    assert (quaternion["data"], quaternion["bss"]) == (32, 36)  # w is 1
+    assert 100 < quaternion["text"] < text["text"] < 1000
+    assert text["text"] < both["text"] < 2000
+    assert both["buffer"] == 73 + 36

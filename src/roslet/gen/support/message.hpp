@@ -1,4 +1,4 @@
-// What the headers that `roslet gen cpp` writes stand on. Written by roslet; do not edit.
+// What the headers that `roslet gen cpp` writes stand on. Part of roslet (Apache License 2.0); do not edit.
 //
 // Freestanding C++17 for GCC and Clang: no heap, no exceptions, no RTTI, no global state, no library to link but memcpy and
 // memset. Nothing here reads or writes outside the span that it was given.
