@@ -21,19 +21,20 @@ void require(bool condition, const char* type, const char* what) {
 
 template <class T>
 void judge(const std::uint8_t* data, std::size_t size) {
-    auto message = std::make_unique<T>();
+    // The largest are made once; what an earlier input left in them must not matter.
+    static T* const message = new T;
+    static T* const again = new T;
+    static Octets first(new std::uint8_t[T::max_serialized_size]);
     const roslet::Result read = message->deserialize({data, size});
     require(read.size <= size, T::type_name, "read beyond the end");
     require(bool(read) || read.field == roslet::no_field || read.field < T::field_count, T::type_name, "no such field");
     // After an error, too, every field is within its bounds.
     const std::size_t room = T::max_serialized_size;
-    Octets first(new std::uint8_t[room]);
     const roslet::Result written = message->serialize({first.get(), room});
     require(bool(written), T::type_name, "what was read cannot be written");
     if (!read) {
         return;
     }
-    auto again = std::make_unique<T>();
     Octets exact(new std::uint8_t[written.size]);
     std::memcpy(exact.get(), first.get(), written.size);
     require(again->deserialize({exact.get(), written.size}).size == written.size, T::type_name, "what was written cannot be read");
