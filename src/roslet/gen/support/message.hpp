@@ -265,7 +265,8 @@ public:
         return true;
     }
 
-    /// `size` elements to be written by the caller: new ones are not initialized. Null, and nothing changes, beyond the bound.
+    /// `size` elements to be written by the caller: new ones are not initialized. Null, and nothing changes, beyond the
+    /// bound.
     T* overwrite(std::size_t size) noexcept {
         static_assert(std::is_arithmetic_v<T>, "an element that is no number has defaults: resize");
         if (size > N) {
@@ -645,7 +646,8 @@ private:
         if (size == 0) {
             return true;
         }
-        std::uint8_t* const to = take(sizeof(T) < Encoding::alignment ? sizeof(T) : Encoding::alignment, size * sizeof(T), field);
+        constexpr std::size_t align = sizeof(T) < Encoding::alignment ? sizeof(T) : Encoding::alignment;
+        std::uint8_t* const to = take(align, size * sizeof(T), field);
         if (to == nullptr) {
             return false;
         }
@@ -727,7 +729,8 @@ private:
         }
     }
 
-    bool octets(const std::uint8_t* count, char* text, std::size_t bound, std::size_t& size, std::uint16_t field) noexcept {
+    bool octets(const std::uint8_t* count, char* text, std::size_t bound, std::size_t& size,
+                std::uint16_t field) noexcept {
         const std::size_t whole = detail::load<std::uint32_t>(count, swap());
         // Some write an empty string without the zero that is counted.
         size = whole < Encoding::terminator ? 0 : whole - Encoding::terminator;
@@ -742,7 +745,8 @@ private:
         return true;
     }
 
-    bool units(const std::uint8_t* count, char16_t* text, std::size_t bound, std::size_t& size, std::uint16_t field) noexcept {
+    bool units(const std::uint8_t* count, char16_t* text, std::size_t bound, std::size_t& size,
+               std::uint16_t field) noexcept {
         size = detail::load<std::uint32_t>(count, swap());
         if (size > bound) {
             return fail(Error::too_long, field);
