@@ -162,10 +162,10 @@ inline void print_result(const Row& row, roslet::Result result) {
                 result.size);
 }
 
-// Lengths that are too short (all of the first 400, then some), in blocks of just that size so that a sanitizer sees a step
+// Lengths that are too short (all of the first 200, then some), in blocks of just that size so that a sanitizer sees a step
 // outside: the first complaint, or "ok".
 inline void cut(const Row& row, void* message, const std::uint8_t* octets, std::size_t size) {
-    for (std::size_t length = 0; length < size; length += length < 400 ? 1 : 61) {
+    for (std::size_t length = 0; length < size; length += length < 200 ? 1 : 61) {
         Octets block(new std::uint8_t[length]);
         roslet::Result result = row.serialize(message, {block.get(), length});
         if (result.error != roslet::Error::buffer_too_small || result.size > length) {
