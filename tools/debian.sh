@@ -16,6 +16,7 @@ python3-polled-camera python3-numpy python3-yaml
 ros-std-msgs ros-std-srvs ros-geometry-msgs ros-sensor-msgs ros-nav-msgs ros-shape-msgs ros-stereo-msgs
 ros-trajectory-msgs ros-visualization-msgs ros-diagnostic-msgs ros-actionlib-msgs ros-rosgraph-msgs ros-tf2-msgs
 ros-map-msgs ros-move-base-msgs ros-pcl-msgs ros-topic-tools-srvs
+clang libclang-rt-dev gcc-arm-none-eabi libstdc++-arm-none-eabi-dev g++-arm-linux-gnueabihf qemu-user
 gcc g++ pkg-config iproute2 procps tshark iputils-ping iputils-arping iverilog
 "
 

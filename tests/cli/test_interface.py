@@ -191,3 +191,44 @@ def test_gen_python_takes_packages_and_types(run: Run, tmp_path: pathlib.Path) -
 
 def test_gen_python_without_names_is_wrong_usage(run: Run, tmp_path: pathlib.Path) -> None:
     assert run("gen", "python", tmp_path / "out").code == 2
+
+
+def test_gen_cpp_writes_headers_and_then_leaves_them_alone(run: Run, tmp_path: pathlib.Path) -> None:
+    folder = tmp_path / "include"
+    first = run("gen", "cpp", folder, "--types", MSGS)
+    assert first.code == 0
+    assert str(folder / "mros_comm_measure" / "Coordinate.hpp") in first.out.splitlines()
+    assert str(folder / "roslet" / "message.hpp") in first.out.splitlines()
+    second = run("gen", "cpp", folder, "--types", MSGS)
+    assert (second.code, second.out) == (0, "")
+    assert "nothing has changed" in second.err
+    other = run(
+        "gen", "cpp", folder, "--types", MSGS, "--dialect", "ros2", "mros_comm_measure/Coordinate", "--json"
+    )
+    assert str(folder / "mros_comm_measure" / "msg" / "Coordinate.hpp") in json.loads(other.out)
+    assert str(folder / "roslet" / "message.hpp") not in json.loads(other.out)
+
+
+def test_gen_cpp_takes_bounds_from_options_and_a_file(run: Run, tmp_path: pathlib.Path) -> None:
+    bounds = tmp_path / "bounds.txt"
+    bounds.write_text("sensor_msgs/JointState.name[] 12\nstd_msgs/Header.frame_id 8\n")
+    options = ["--string-bound", "20", "--sequence-bound", "5", "--bounds", bounds]
+    assert run("gen", "cpp", tmp_path / "out", "sensor_msgs/JointState", *options).code == 0
+    text = (tmp_path / "out" / "sensor_msgs" / "JointState.hpp").read_text()
+    assert "roslet::Sequence<roslet::String<12>, 5> name{};" in text
+    assert "roslet::Sequence<double, 5> position{};" in text
+    assert "roslet::String<8> frame_id{};" in (tmp_path / "out" / "std_msgs" / "Header.hpp").read_text()
+
+
+def test_gen_cpp_tells_what_is_wrong(run: Run, tmp_path: pathlib.Path) -> None:
+    assert run("gen", "cpp", tmp_path / "out").code == 2
+    assert run("gen", "cpp", tmp_path / "out", "std_msgs", "--string-bound", "0").code == 2
+    absent = run("gen", "cpp", tmp_path / "out", "std_msgs", "--bounds", tmp_path / "none")
+    assert absent.code == 1 and "cannot read" in absent.err
+    bounds = tmp_path / "bounds.txt"
+    bounds.write_text("std_msgs/Header.seq 4\n")
+    wrong = run("gen", "cpp", tmp_path / "out", "std_msgs", "--bounds", bounds)
+    assert wrong.code == 1 and "bounds.txt:1" in wrong.err
+    large = run("gen", "cpp", tmp_path / "out", "sensor_msgs/PointCloud2", "--sequence-bound", "400000000")
+    assert large.code == 1 and "lower its bounds" in large.err
+    assert not (tmp_path / "out").exists()

@@ -23,7 +23,7 @@ LEAVES = [
     "param list", "param get", "param set", "param delete", "param describe", "param dump",
     "param load",
     "interface show", "interface hash", "interface size", "interface list",
-    "gen python", "master", "doctor", "run", "bench", "demo",
+    "gen cpp", "gen python", "master", "doctor", "run", "bench", "demo",
     "gateware build",
     "gateware sim",
 ]  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import pathlib
+import shutil
 import signal
 import struct
 import subprocess
@@ -64,9 +65,9 @@ def start_ros2() -> Iterator[Start]:
         yield begin
 
 
-def finish(process: subprocess.Popen[str]) -> list[str]:
+def finish(process: subprocess.Popen[str], patience: float = 20) -> list[str]:
     """The lines that a program printed; it must end by itself, with exit code 0, and complain of nothing."""
-    out, err = process.communicate(timeout=20)
+    out, err = process.communicate(timeout=patience)
     assert (process.returncode, err) == (0, "")
     return out.splitlines()
 
@@ -121,6 +122,20 @@ def test_coordinates_are_heard_checked_and_come_back(start: Start) -> None:
     heard = finish(listener)
     assert heard[0].startswith("I heard [x: 0.100000, y: 10.030000, z: 3.003000] at ")
     assert heard[-1] == "heard 5, wrong 0"
+
+
+def test_a_board_in_cpp_talks_through_a_node(start: Start) -> None:
+    if shutil.which("g++") is None:
+        pytest.skip("the compiler g++ is absent; `make peers` installs it")
+    listener = start("coordinate_listener.py", "--count", 3)
+    said = finish(start("cpp/board.py", "--count", 3), patience=100)  # it compiles first
+    assert said[:3] == [
+        "came back [x: 0.100000, y: 10.030000, z: 3.003000]",
+        "came back [x: 0.200000, y: 20.059999, z: 6.006000]",
+        "came back [x: 0.300000, y: 30.090000, z: 9.009000]",
+    ]
+    assert said[3].startswith("heard 3, wrong 0, longest round trip ")
+    assert finish(listener)[-1] == "heard 3, wrong 0"
 
 
 def test_a_listener_notices_what_is_not_as_it_should_be(start: Start, tmp_path: pathlib.Path) -> None:
