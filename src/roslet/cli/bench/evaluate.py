@@ -13,7 +13,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 import roslet
-from roslet.cli.bench import PARTS, report, rtt, stacks
+from roslet.cli.bench import PARTS, porting, report, rtt, stacks
 from roslet.cli.bench.paper import SIZES
 from roslet.cli.bench.tables import tables
 from roslet.cli.options import USAGE, CommandError
@@ -64,6 +64,9 @@ def evaluate(arguments: argparse.Namespace) -> int:
             trips = rtt.measure(everybody, network, rtt.cases(sizes), rounds, count, Progress("rtt"))
             result["rtt"] = _trips(trips, everybody, sizes, rounds, count)
             result["problems"] += _lost(result["rtt"])
+        if "porting" in parts:
+            result["porting"] = porting.measure(network, Progress("porting"))
+            result["problems"] += result["porting"]["problems"]
     if arguments.gates:
         with open(arguments.gates, encoding="utf-8") as file:
             result["gates"] = json.load(file)["echo"]

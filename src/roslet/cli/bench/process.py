@@ -25,10 +25,14 @@ class Failed(Exception):
 
 
 class Process:
-    """One program that says facts as JSON lines. As a context manager it ends with the block."""
+    """One program that says facts as JSON lines. As a context manager it ends with the block: the end of its standard
+    input ends one that listens to that, SIGTERM another."""
 
-    def __init__(self, name: str, command: Sequence[str], environment: dict[str, str]) -> None:
+    def __init__(
+        self, name: str, command: Sequence[str], environment: dict[str, str], listens: bool = True
+    ) -> None:
         self.name = name
+        self._listens = listens
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._errors: list[str] = []
         self.process = subprocess.Popen(
@@ -97,6 +101,8 @@ class Process:
         if self.process.stdin is not None:
             with contextlib.suppress(OSError):
                 self.process.stdin.close()
+        if not self._listens:
+            self.process.terminate()
         try:
             self.process.wait(PATIENCE)
         except subprocess.TimeoutExpired:

@@ -129,7 +129,8 @@ def _turn(
     """One stack's part of a round."""
     variables = stack.environment(network)
     options: dict[str, Any] = {"cases": list(names), "count": count, "warm_up": WARM_UP}
-    with Process(f"the echo node of {stack.name}", stack.command("echo", {}), variables) as echo:
+    name, listens = f"the echo node of {stack.name}", not stack.foreign
+    with Process(name, stack.command("echo", {}), variables, listens) as echo:
         if not stack.foreign:
             ready = echo.fact(START)
             variables["BENCH_PORT"] = str(ready.get("port", ""))
