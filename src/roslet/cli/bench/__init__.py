@@ -54,6 +54,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--gates", metavar="FILE", help="what `python benchmarks/gates.py --only echo --json` printed"
     )
     parser.add_argument(
+        "--sizes-of",
+        metavar="FILE",
+        help="sections and installed bytes that other commands measured, as JSON (see docs/evaluation.md)",
+    )
+    parser.add_argument(
         "--output", metavar="DIR", default="roslet-bench", help="where the report goes (default roslet-bench)"
     )
 

@@ -13,7 +13,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 import roslet
-from roslet.cli.bench import PARTS, porting, report, rtt, stacks
+from roslet.cli.bench import PARTS, porting, report, rtt, size, stacks, validity
 from roslet.cli.bench.paper import SIZES
 from roslet.cli.bench.tables import tables
 from roslet.cli.options import USAGE, CommandError
@@ -56,6 +56,8 @@ def evaluate(arguments: argparse.Namespace) -> int:
         own = [stacks.of_user(text) for text in arguments.echo]
     except ValueError as error:
         raise CommandError(str(error), USAGE) from None
+    for path in (arguments.gates, arguments.sizes_of):
+        _json(path)
     found, absent = stacks.peers(note)
     everybody = stacks.chosen([*stacks.floors(), *stacks.ours(), *found], arguments.stacks) + own
     result: dict[str, Any] = {"about": _about(absent), "problems": []}
@@ -64,12 +66,22 @@ def evaluate(arguments: argparse.Namespace) -> int:
             trips = rtt.measure(everybody, network, rtt.cases(sizes), rounds, count, Progress("rtt"))
             result["rtt"] = _trips(trips, everybody, sizes, rounds, count)
             result["problems"] += _lost(result["rtt"])
+        if "validity" in parts:
+            result["validity"] = validity.measure(
+                validity.peers(everybody, note),
+                network,
+                Progress("validity"),
+                validity.QUICK if arguments.quick else (),
+            )
+            result["problems"] += result["validity"]["problems"]
         if "porting" in parts:
             result["porting"] = porting.measure(network, Progress("porting"))
             result["problems"] += result["porting"]["problems"]
+    if "size" in parts:
+        memory = result["rtt"]["memory"] if "rtt" in result else {}
+        result["size"] = size.measure(memory, _json(arguments.sizes_of))
     if arguments.gates:
-        with open(arguments.gates, encoding="utf-8") as file:
-            result["gates"] = json.load(file)["echo"]
+        result["gates"] = _json(arguments.gates)["echo"]
     folder = pathlib.Path(arguments.output)
     paths = report.write(result, folder)
     if arguments.json:
@@ -100,6 +112,19 @@ def _extent(arguments: argparse.Namespace) -> tuple[tuple[int, ...], int, int]:
     if rounds < 1 or count < 1:
         raise CommandError("rounds and messages are at least 1", USAGE)
     return sizes, rounds, count
+
+
+def _json(path: str | None) -> dict[str, Any]:
+    """What a file says that another command wrote; nothing where there is no file."""
+    if path is None:
+        return {}
+    try:
+        found = json.loads(pathlib.Path(path).read_text("utf-8"))
+    except (OSError, ValueError) as error:
+        raise CommandError(f"{path}: {error}") from None
+    if not isinstance(found, dict):
+        raise CommandError(f"{path}: not a JSON object")
+    return found
 
 
 def _network() -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import itertools
 import pathlib
 import re
 import sys
@@ -65,7 +66,7 @@ def moves(lines: Sequence[str]) -> bool:
         points.append([int(part) for part in found.groups()])
     return all(
         abs(later - earlier - step) <= 2
-        for before, after in zip(points, points[1:], strict=False)
+        for before, after in itertools.pairwise(points)
         for earlier, later, step in zip(before, after, STEP, strict=True)
     )
 

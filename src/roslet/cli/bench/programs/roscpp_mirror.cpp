@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
   std::thread([] {
     char octet;
     while (read(0, &octet, 1) > 0) {}
-    _exit(0);
+    ros::shutdown();
   }).detach();
   std::cout << std::setprecision(17);
   for (int k = 1; k < argc; k++) {
@@ -86,4 +86,6 @@ int main(int argc, char** argv) {
   }
   std::cout << "ready" << std::endl;
   ros::spin();
+  publishers.clear();
+  subscribers.clear();
 }
