@@ -58,8 +58,9 @@ def evaluate(arguments: argparse.Namespace) -> int:
         raise CommandError(str(error), USAGE) from None
     for path in (arguments.gates, arguments.sizes_of):
         _json(path)
-    found, absent = stacks.peers(note)
-    everybody = stacks.chosen([*stacks.floors(), *stacks.ours(), *found], arguments.stacks) + own
+    found, absent = stacks.peers(arguments.stacks, note)
+    ours = [stack for stack in stacks.ours() if stacks.wanted(stack.name, arguments.stacks)]
+    everybody = [*stacks.floors(), *ours, *found, *own]
     result: dict[str, Any] = {"about": _about(absent), "problems": []}
     with _network() as network:
         if "rtt" in parts:

@@ -11,6 +11,7 @@ from roslet.cli.bench.rtt import quantile
 
 COLOURS = ("#999999", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 QUOTED = "mROS, the paper's"
+HEADROOM = 8
 
 
 def available() -> bool:
@@ -68,7 +69,7 @@ def strings(result: dict[str, Any]) -> str:
     pyplot = _pyplot()
     found = result["rtt"]
     sizes = [case for case in found["cases"] if case != paper.COORDINATE]
-    figure, panels = pyplot.subplots(2, 1, figsize=(11, 8), sharex=True, sharey=True)
+    figure, panels = pyplot.subplots(2, 1, figsize=(11, 8), sharex=True)
     for axes, dialect in zip(panels, ("ros1", "ros2"), strict=True):
         names = [name for name, one in found["stacks"].items() if one in (dialect, f"floor {dialect}")]
         width = 0.8 / max(1, len(names))
@@ -84,6 +85,8 @@ def strings(result: dict[str, Any]) -> str:
         quoted = [paper.MEANS[QUOTED].get(case) for case in sizes]
         axes.plot(range(len(sizes)), quoted, "x", color="#777777", label=f"{QUOTED}, mean ({paper.MARK})")
         axes.set_yscale("log")
+        low, high = axes.get_ylim()
+        axes.set_ylim(low, HEADROOM * high)  # for the legend
         axes.set_ylabel("round trip, us")
         axes.set_title({"ros1": "ROS 1", "ros2": "ROS 2"}[dialect])
         axes.grid(True, axis="y", alpha=0.3)

@@ -52,7 +52,7 @@ def folder_bytes(folder: pathlib.Path, without: Iterable[str] = ("__pycache__",)
 
 
 def rooms(package: pathlib.Path) -> dict[str, int]:
-    """Of roslet: all of it, and what a node needs of it, which is all but gates, simulation, command, master and rospy, rclpy."""
+    """Of roslet: all of it, and what a node needs, which is all but gates, simulation, command, master, rospy, rclpy."""
     return {
         "roslet, all of it": folder_bytes(package),
         "roslet, what a node needs": folder_bytes(

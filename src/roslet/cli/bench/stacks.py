@@ -17,7 +17,7 @@ from roslet.cli.bench.process import environment
 from roslet.cli.demo.programs import cyclone_python, folder
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
 PROGRAMS = pathlib.Path(__file__).with_name("programs")
 DEBIAN_PYTHON = "/usr/bin/python3"
@@ -104,12 +104,14 @@ def ours() -> list[Stack]:
     ]
 
 
-def peers(say: Any = lambda text: None) -> tuple[list[Stack], dict[str, str]]:
-    """The peers that are installed, and by name why others are left out. May compile, which `say` is told."""
+def peers(only: str, say: Any = lambda text: None) -> tuple[list[Stack], dict[str, str]]:
+    """The peers that are installed and wanted (`only`, words), and by name why others are left out. May compile, which `say`
+    is told."""
     found, absent = [], {}
     try:
-        program = str(compiled.program("roscpp_node", say))
-        found.append(Stack("roscpp", "ros1", (program,), (program,)))
+        if wanted("roscpp", only):
+            program = str(compiled.program("roscpp_node", say))
+            found.append(Stack("roscpp", "ros1", (program,), (program,)))
     except compiled.Absent as error:
         absent["roscpp"] = str(error)
     try:
@@ -131,7 +133,7 @@ def peers(say: Any = lambda text: None) -> tuple[list[Stack], dict[str, str]]:
     else:
         words = (cyclone, str(PROGRAMS / "cyclone_node.py"))
         found.append(Stack("cyclonedds", "ros2", words, words, {}, floor=UDP))
-    return found, absent
+    return [stack for stack in found if wanted(stack.name, only)], absent
 
 
 def rclpy_python() -> str | None:
@@ -159,11 +161,7 @@ def of_user(text: str) -> Stack:
     )
 
 
-def chosen(stacks: Sequence[Stack], words: str) -> list[Stack]:
-    """Those with one of the words, separated by commas, in their names; floors always. All where there are no words."""
-    wanted = [word.strip().lower() for word in words.split(",") if word.strip()]
-    return [
-        stack
-        for stack in stacks
-        if not wanted or not stack.dialect or any(word in stack.name.lower() for word in wanted)
-    ]
+def wanted(name: str, words: str) -> bool:
+    """Whether one of the words, separated by commas, is in a name; true where there are no words."""
+    each = [word.strip().lower() for word in words.split(",") if word.strip()]
+    return not each or any(word in name.lower() for word in each)

@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-ANY = object()
+
+class _Any:
+    def __repr__(self) -> str:
+        return "anything"
+
+
+ANY = _Any()
 """Matches whatever comes: a header's `seq` belongs to the publisher."""
 IMAGE_OCTETS = 32768
 

@@ -66,7 +66,7 @@ class Stack:
 
     def fields(self, message):
         """Names of its fields, in order; None where it is no message."""
-        return getattr(message, "__slots__", None)
+        return ("secs", "nsecs") if hasattr(message, "secs") else getattr(message, "__slots__", None)
 
     def close(self):
         """Leave the network."""

@@ -26,11 +26,6 @@ class Rospy(pinger.Stack):
             raise KeyError(name)
         return found
 
-    def fields(self, message):
-        if hasattr(message, "secs"):
-            return ("secs", "nsecs")
-        return getattr(message, "__slots__", None)
-
     def publisher(self, name, topic):
         return self.rospy.Publisher(topic, self.kind(name), queue_size=10).publish
 
