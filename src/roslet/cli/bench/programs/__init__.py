@@ -1,0 +1,1 @@
+"""What other interpreters run for `roslet bench`: nothing here is imported by roslet."""
