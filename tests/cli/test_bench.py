@@ -231,7 +231,9 @@ def test_a_peer_that_reads_another_value_is_noticed(
     }
     assert len(found["problems"]) == 6 * error
     if error:
-        assert re.search(r"std_msgs/Int32, message 1: the peer read -\d+, not -2147483648", found["problems"][0])
+        assert re.search(
+            r"std_msgs/Int32, message 1: the peer read -\d+, not -2147483648", found["problems"][0]
+        )
 
 
 def test_a_stack_that_fails_is_a_problem_and_the_others_go_on(master: MasterServer) -> None:

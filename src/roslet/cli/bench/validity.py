@@ -135,7 +135,7 @@ def _peer(
 class _Ends:
     """Our publisher and subscription of one type."""
 
-    def __init__(self, node: roslet.Node, dialect: str, type_name: str, number: int) -> None:
+    def __init__(self, node: roslet.Node, dialect: Any, type_name: str, number: int) -> None:
         self.node = node
         self.kind: Any = message_class(dialect, type_name)
         self.make = lambda name: message_class(dialect, name)()

@@ -126,7 +126,7 @@ def _same(expected: Any, found: Any) -> bool:
         if isinstance(expected, float):
             value = float(found)
             return value == expected and math.copysign(1.0, value) == math.copysign(1.0, expected)
-        return int(found) == expected
+        return bool(int(found) == expected)
     except (TypeError, ValueError):
         return False
 
