@@ -39,10 +39,8 @@ def _shorten_globals(
                 taken.add(node.id)
             elif isinstance(node, ast.arg):
                 taken.add(node.arg)
-            elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) or (
-                isinstance(node, ast.ExceptHandler) and node.name is not None
-            ):
-                taken.add(node.name)
+            elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ExceptHandler):
+                taken.add(node.name or "")
             elif isinstance(node, ast.alias):
                 taken.add(node.asname or node.name)
         for statement in piece.body:

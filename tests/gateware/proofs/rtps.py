@@ -262,8 +262,8 @@ class ParametersSpec(Spec):
         ),
         Bug(
             "taken",
-            "m.d.comb += [i.ready.eq(1), self.drop_malformed",
-            "m.d.comb += [i.ready.eq(came), self.drop_malformed",
+            'with m.Elif(i.valid):\n                    m.next = "MALFORMED"',
+            'with m.Elif(i.valid):\n                    m.next = "PARAMETER"',
         ),
     )
 
