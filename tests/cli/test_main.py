@@ -26,6 +26,7 @@ LEAVES = [
     "gen cpp", "gen python", "master", "doctor", "run", "bench", "demo",
     "gateware build",
     "gateware sim",
+    "micropython bundle", "micropython run",
 ]  # fmt: skip
 
 

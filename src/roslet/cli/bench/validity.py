@@ -6,6 +6,7 @@ the peer said is compared with what was written, and so is what came back: each 
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import re
 import time
@@ -47,10 +48,10 @@ class Mirror:
             if "lacks" in fact:
                 self.lacking.add(fact["type"])
 
-    def heard(self, number: int) -> list[Any]:
+    def heard(self, number: int, seconds: float) -> list[Any]:
         """The values of the next message of the type with this number. Raises Failed."""
         while True:
-            fact = self._fact(ANSWER)
+            fact = self._fact(seconds)
             if fact.get("type") == number:
                 return list(fact["values"])
 
@@ -159,7 +160,10 @@ def _exchange(ends: _Ends, mirror: Mirror, number: int, value: list[Any], first:
         return "nothing comes back"
     if sent > 1:  # what was sent in vain, or comes twice
         ends.node.spin_until(lambda: len(ends.back) >= sent, AGAIN)
-    heard = [mirror.heard(number) for _ in range(len(ends.back))]
+    heard = [mirror.heard(number, ANSWER) for _ in range(len(ends.back))]
+    with contextlib.suppress(Failed):  # what it heard before it had found us
+        while len(heard) < sent:
+            heard.append(mirror.heard(number, AGAIN))
     expected = values.printed(value) if mirror.printed else values.flat(value)
     if not all(values.same(expected, one) for one in heard):
         return f"the peer read {_short(heard[0])}, not {_short(expected)}"
@@ -169,4 +173,5 @@ def _exchange(ends: _Ends, mirror: Mirror, number: int, value: list[Any], first:
 
 
 def _short(found: list[Any]) -> str:
-    return str(found[:8])[1:-1] + (" ..." if len(found) > 8 else "")
+    text = str(found[:8])[1:-1]
+    return text[:80] + (" ..." if len(found) > 8 or len(text) > 80 else "")
