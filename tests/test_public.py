@@ -113,7 +113,9 @@ def test_every_public_method_has_a_docstring(kind: type) -> None:
 
 def test_every_module_says_what_it_is() -> None:
     silent = []
-    counted = SOURCE / "cli/bench/programs/porting"  # programs whose lines are compared: they hold nothing else
+    counted = (
+        SOURCE / "cli/bench/programs/porting"
+    )  # programs whose lines are compared: they hold nothing else
     for path in sorted(set(SOURCE.rglob("*.py")) - set(counted.glob("*.py"))):
         if ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) is None:
             silent.append(path.relative_to(SOURCE).as_posix())
