@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
 
+from roslet.gateware import toolchain
 from roslet.gateware.config import (
     Config,
     check_rx_udp_port,
@@ -74,7 +73,6 @@ def test_the_periods_of_table_a2_are_counted_in_divided_clocks() -> None:
     assert Config(ros2clk_hz=50_000_000).tx_counts["TX_INTERVAL_COUNT"] == 50_000_000 // 64 // 100
 
 
-@pytest.mark.skipif(not shutil.which("yosys"), reason="no yosys")
 def test_a_verilog_tool_reads_the_headers(tmp_path: Path) -> None:
     (tmp_path / "ros2_config.vh").write_text(ros2_config_vh(Config()))
     (tmp_path / "ros2_ether_config.vh").write_text(ros2_ether_config_vh(Config()))
@@ -84,7 +82,7 @@ def test_a_verilog_tool_reads_the_headers(tmp_path: Path) -> None:
         "assign a = `PAYLOADSMEM_DEPTH - 1; assign b = `EXT_TX_FIFO_DEPTH;\nendmodule\n"
     )
     commands = "read_verilog top.v; hierarchy -check -top top; proc; sat -prove a 2959 -prove b 2 -verify"
-    subprocess.run(["yosys", "-q", "-p", commands], cwd=tmp_path, check=True, timeout=60)
+    toolchain.run("yosys", ["-q", "-p", commands], tmp_path)
 
 
 @pytest.mark.parametrize(
