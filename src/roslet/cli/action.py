@@ -133,6 +133,7 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
     from roslet.cli.values import build
     from roslet.errors import CallTimeout, UnknownType
     from roslet.gen.runtime import action_class
+    from roslet.io.interrupts import held
     from roslet.node.ros2.actions import GoalRejected
 
     load_types(arguments)
@@ -149,10 +150,11 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
         node = graph.node
         client = node.action_client(name, kind)
         goal = build(kind.Goal, arguments.values, node.now)
-        answer = client.send_goal_async(
-            goal, None if arguments.no_feedback else lambda message: _show(arguments, "feedback", message)
-        )
+        feedback = None if arguments.no_feedback else lambda message: _show(arguments, "feedback", message)
+        answer = None
         try:
+            with held():
+                answer = client.send_goal_async(goal, feedback)
             if not node.spin_until(answer.done, arguments.timeout):
                 raise CommandError(f"{name}: no answer within {arguments.timeout:g} s", UNREACHABLE)
             left = None if end is None else max(0.001, end - monotonic())
@@ -160,11 +162,14 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
         except GoalRejected as error:
             raise CommandError(str(error)) from None
         except CallTimeout:
+            assert answer is not None
             _cancel(arguments, answer.result(0))
             raise CommandError(
                 f"{name}: no result within {arguments.timeout:g} s; the goal is canceled", UNREACHABLE
             ) from None
         except KeyboardInterrupt:
+            if answer is None:
+                raise  # nothing was sent
             if not node.spin_until(answer.done, CANCEL_TIMEOUT):
                 note("the server does not say whether it has accepted the goal")
             elif answer.exception() is None:

@@ -46,6 +46,14 @@ def watch(lock: Any) -> None:
         signal.signal(signal.SIGINT, on_sigint)
 
 
+def held() -> Any:
+    """For `with`, while a node is open: Ctrl-C waits for the end of the block, where what it asked of a peer is known.
+
+    The block must be short, and may not wait for another thread.
+    """
+    return _lock
+
+
 def on_sigint(number: int, frame: FrameType | None) -> None:
     """KeyboardInterrupt, now or in a moment."""
     if not put_off(number, frame):

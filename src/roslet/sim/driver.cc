@@ -1,9 +1,9 @@
 // Drives one compiled design: clocks of any period and phase, pins by name, MII and GMII pins by queues of symbols, waveforms.
 //
-// Compiled together with what Yosys's write_cxxrtl made of the design, into one shared library with the C interface below.
+// Linked with what Yosys's write_cxxrtl made of the design into one shared library with the C interface below.
 // Times are picoseconds. A symbol of MII pins: bits 7..0 data, bit 8 data valid (rx_dv, tx_en), bit 9 error (rx_er, tx_er).
 
-#include "design.cc"  // made by Yosys; a namespace cxxrtl_design with p_top in it
+#include "design.h"  // of what Yosys made; a namespace cxxrtl_design with p_top in it
 #include <cxxrtl/cxxrtl_vcd.h>
 
 #include <algorithm>
@@ -22,12 +22,12 @@ using Item = cxxrtl::debug_item;
 const uint16_t VALID = 1 << 8;
 const uint16_t ERROR = 1 << 9;
 
-// What the design's edge detectors remember of its clocks; edges.inc is made by compile.py, a line for each.
+// What the design's edge detectors remember of its clocks; clocks.inc is made by units.py, a line for each.
 cxxrtl::chunk_t *remembered(Top &top, const std::string &name) {
 #define ROSLET_CLOCK(pin, member) \
 	if (name == pin) \
 		return top.member.data;
-#include "edges.inc"
+#include "clocks.inc"
 	return nullptr;
 }
 

