@@ -3,7 +3,9 @@ PYTHON := .venv/bin/python
 
 .PHONY: demo test quick formal lint format types docs bench fuzz peers venv clean
 
-demo: venv ## the whole path in one terminal, in about two minutes
+demo: ## the whole path in one terminal, in about two minutes
+	@tools/debian.sh python3-venv g++
+	@tools/venv.sh
 	$(PYTHON) -m roslet demo
 
 test: ## lint, types, layers, every test on CPython and MicroPython, real peers

@@ -1,9 +1,9 @@
 #!/bin/sh
-# Installs the Debian packages that the peers and the tools need: only those missing, only as root.
-# Anywhere else it says what is missing and succeeds; the tests that need them then skip (and fail when CI is set).
+# Installs the Debian packages that the peers and the tools need, or those that the arguments name: only those missing, only
+# as root. Anywhere else it says what is missing and succeeds; the tests that need them then skip (and fail when CI is set).
 set -eu
 
-packages="
+packages=${*:-"
 python3-venv
 ros-core python3-rospy python3-rosmaster python3-roslaunch python3-rosbag python3-rostopic python3-rosnode
 python3-rosservice python3-rosparam python3-rosmsg python3-roslz4 python3-genpy python3-gencpp python3-genmsg
@@ -18,7 +18,7 @@ ros-trajectory-msgs ros-visualization-msgs ros-diagnostic-msgs ros-actionlib-msg
 ros-map-msgs ros-move-base-msgs ros-pcl-msgs ros-topic-tools-srvs
 clang libclang-rt-dev gcc-arm-none-eabi libstdc++-arm-none-eabi-dev g++-arm-linux-gnueabihf qemu-user
 gcc g++ pkg-config iproute2 procps tshark iputils-ping iputils-arping iverilog
-"
+"}
 
 command -v dpkg-query >/dev/null 2>&1 || { echo "debian.sh: not a Debian system, nothing installed" >&2; exit 0; }
 

@@ -6,14 +6,15 @@ import difflib
 import itertools
 import pathlib
 import re
+import signal
 import sys
 import tempfile
 import time
 from typing import TYPE_CHECKING, Any
 
-from roslet.cli.bench.process import Failed, Process, environment
 from roslet.cli.bench.stacks import PROGRAMS, SOURCE
 from roslet.cli.demo.programs import folder
+from roslet.cli.process import Failed, Process, environment
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -101,8 +102,8 @@ def installed(prefix: pathlib.Path) -> pathlib.Path:
 def verify(publisher: list[str], subscriber: list[str], variables: dict[str, str]) -> None:
     """Run both, and read what the subscriber says. Raises Failed."""
     with (
-        Process("the subscriber", subscriber, variables, listens=False) as listener,
-        Process("the publisher", publisher, variables, listens=False),
+        Process("the subscriber", subscriber, variables, stop=signal.SIGTERM) as listener,
+        Process("the publisher", publisher, variables, stop=signal.SIGTERM),
     ):
         end = time.monotonic() + PATIENCE
         lines: list[str] = []

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+import signal
 import statistics
 import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from roslet.cli.bench.paper import COORDINATE, SIZES
-from roslet.cli.bench.process import Failed, Process
+from roslet.cli.process import Failed, Process
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -129,8 +130,8 @@ def _turn(
     """One stack's part of a round."""
     variables = stack.environment(network)
     options: dict[str, Any] = {"cases": list(names), "count": count, "warm_up": WARM_UP}
-    name, listens = f"the echo node of {stack.name}", not stack.foreign
-    with Process(name, stack.command("echo", {}), variables, listens) as echo:
+    name, stop = f"the echo node of {stack.name}", signal.SIGTERM if stack.foreign else None
+    with Process(name, stack.command("echo", {}), variables, stop) as echo:
         if not stack.foreign:
             ready = echo.fact(START)
             variables["BENCH_PORT"] = str(ready.get("port", ""))

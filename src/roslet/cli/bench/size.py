@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import roslet
 from roslet.cli.bench import compiled
-from roslet.cli.bench.process import environment
 from roslet.cli.bench.stacks import DEBIAN_PYTHON, rclpy_python
 from roslet.cli.demo.programs import cyclone_python
+from roslet.cli.process import environment
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

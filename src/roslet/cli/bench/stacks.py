@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import roslet
 from roslet.cli.bench import compiled
-from roslet.cli.bench.process import environment
 from roslet.cli.demo.programs import cyclone_python, folder
+from roslet.cli.process import environment
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

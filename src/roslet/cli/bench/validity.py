@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import roslet
 from roslet.cli.bench import compiled, stacks, values
-from roslet.cli.bench.process import Failed, Process
 from roslet.cli.demo.programs import folder
+from roslet.cli.process import Failed, Process
 from roslet.gen.runtime import message_class
 
 if TYPE_CHECKING:

@@ -9,10 +9,11 @@ import importlib.util
 import json
 import re
 import shutil
-import subprocess
+import signal
 import sys
 from typing import TYPE_CHECKING, Any
 
+from roslet.cli.process import Failed, Process
 from roslet.sim.compile import compiler
 
 if TYPE_CHECKING:
@@ -21,8 +22,10 @@ if TYPE_CHECKING:
 EXAMPLE = "topic-pub-sub"
 # Seconds of the wire: a message a second comes from the node, and two a second go to it.
 SECONDS = 6.0
-# Seconds for the design to be compiled, and to live.
+# Seconds of silence, in which the design is compiled, that are too many.
 PATIENCE = 600.0
+# Seconds to end after the last line.
+ENDING = 10.0
 TEXT = re.compile(r"Message from FPGA - (\d{4})")
 
 
@@ -50,16 +53,17 @@ def simulate(say: Callable[[str], None]) -> dict[str, Any]:
         "--json",
     ]
     found: dict[str, Any] = {"heard": [], "sent": [], "leds": [], "problems": []}
-    process = subprocess.Popen(
-        command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8"
-    )
-    assert process.stdout is not None
-    with process:
-        for line in process.stdout:
-            _take(json.loads(line), found, say)
-        errors = process.stderr.read() if process.stderr else ""
-    if process.returncode:
-        found["problems"].append(f"gates: exit code {process.returncode}: {errors.strip()[-500:]}")
+    with Process("gates", command, stop=signal.SIGINT) as process:
+        try:
+            while (line := process.line_or_end(PATIENCE)) is not None:
+                _take(json.loads(line), found, say)
+        except Failed as error:
+            found["problems"].append(str(error))
+            return found
+        if code := process.end(ENDING):
+            found["problems"].append(f"gates: exit code {code}{process.last_words()}")
+        elif code is None:
+            found["problems"].append("gates: the simulation did not end by itself")
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import json
 import os
@@ -9,20 +10,15 @@ import pathlib
 import signal
 import subprocess
 import sys
-import threading
 import time
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 import roslet
 from roslet.cli.options import CommandError
+from roslet.cli.process import Process
 
 if TYPE_CHECKING:
     from types import TracebackType
-
-# Seconds for a process to end by itself after an interrupt, before it is killed.
-PATIENCE = 3.0
-# Lines of a failed program's standard error that are shown.
-TAIL = 12
 
 
 def folder() -> pathlib.Path:
@@ -48,47 +44,21 @@ def cyclone_python() -> str | None:
     return None if done.returncode else there
 
 
-class Program:
-    """One program. `figures` is the latest of the JSON lines that it prints."""
+class Program(Process):
+    """One program, which prints what it knows so far as a JSON line now and then."""
 
     def __init__(self, name: str, command: list[str], environment: dict[str, str]) -> None:
-        self.name = name
-        self.figures: dict[str, Any] = {}
-        self._errors: list[str] = []
-        self.process = subprocess.Popen(
-            command,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            env=environment,
-            encoding="utf-8",
-            errors="replace",
-        )
-        self._readers = [
-            threading.Thread(target=self._read, args=(self.process.stdout,), daemon=True),
-            threading.Thread(target=self._read_errors, args=(self.process.stderr,), daemon=True),
-        ]
-        for reader in self._readers:
-            reader.start()
-
-    def _read(self, stream: IO[str]) -> None:
-        for line in stream:
-            try:
-                figures = json.loads(line)
-            except ValueError:
-                continue  # a line for people
-            if isinstance(figures, dict):
-                self.figures = figures
-
-    def _read_errors(self, stream: IO[str]) -> None:
-        for line in stream:
-            self._errors.append(line.rstrip())
-            del self._errors[:-TAIL]
+        super().__init__(name, command, environment, signal.SIGINT)
+        self._figures: dict[str, Any] = {}
 
     @property
-    def running(self) -> bool:
-        """Whether the process still runs."""
-        return self.process.poll() is None
+    def figures(self) -> dict[str, Any]:
+        """The latest of its JSON lines."""
+        for line in self.lines():
+            with contextlib.suppress(ValueError):  # a line for people
+                if isinstance(figures := json.loads(line), dict):
+                    self._figures = figures
+        return self._figures
 
     def wait_ready(self, seconds: float) -> bool:
         """Wait for its first report, which says that it is ready; false where it ended or did not come."""
@@ -99,29 +69,15 @@ class Program:
 
     def finish(self, seconds: float) -> str:
         """Wait until the program ends by itself; what was wrong with it, "" where nothing was."""
-        try:
-            code = self.process.wait(seconds)
-        except subprocess.TimeoutExpired:
-            self.end()
+        code = self.end(seconds)
+        if code is None:
+            self.close()
             return f"{self.name} did not end by itself"
-        for reader in self._readers:
-            reader.join(PATIENCE)
         if code:
-            last = f": {self._errors[-1]}" if self._errors else ""
-            return f"{self.name} ended with exit code {code}{last}"
+            return f"{self.name} ended with exit code {code}{self.last_words()}"
         if not self.figures.get("final"):
             return f"{self.name} ended without its last report"
         return ""
-
-    def end(self) -> None:
-        """End the process, whatever it does."""
-        if self.running:
-            self.process.send_signal(signal.SIGINT)
-            try:
-                self.process.wait(PATIENCE)
-            except subprocess.TimeoutExpired:
-                self.process.kill()
-                self.process.wait()
 
 
 class Programs:
@@ -166,4 +122,4 @@ class Programs:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         for program in self.all:
-            program.end()
+            program.close()

@@ -1,4 +1,4 @@
-"""Programs of the evaluation as processes: started, read line by line, ended."""
+"""Programs as processes: started, read line by line, ended."""
 
 from __future__ import annotations
 
@@ -7,17 +7,21 @@ import json
 import os
 import queue
 import re
+import signal
 import subprocess
 import threading
 import time
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
-# Seconds for a process to end by itself when its standard input ends, before it is killed.
+    from typing_extensions import Self
+
+# Seconds for a process to end by itself when it is asked to, before it is killed.
 PATIENCE = 5.0
-TAIL = 8
+# Lines of its standard error that are kept, the last ones.
+TAIL = 12
 
 
 class Failed(Exception):
@@ -25,14 +29,22 @@ class Failed(Exception):
 
 
 class Process:
-    """One program that says facts as JSON lines. As a context manager it ends with the block: the end of its standard
-    input ends one that listens to that, SIGTERM another."""
+    """One program that says facts as JSON lines.
+
+    It is asked to end by the end of its standard input and, where there is one, the signal `stop`; as a context manager,
+    with the block.
+    Without an environment it has this process's.
+    """
 
     def __init__(
-        self, name: str, command: Sequence[str], environment: dict[str, str], listens: bool = True
+        self,
+        name: str,
+        command: Sequence[str],
+        environment: Mapping[str, str] | None = None,
+        stop: signal.Signals | None = None,
     ) -> None:
         self.name = name
-        self._listens = listens
+        self._stop = stop
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._errors: list[str] = []
         self.process = subprocess.Popen(
@@ -64,14 +76,33 @@ class Process:
 
     def line(self, seconds: float) -> str:
         """Its next line. Raises Failed where there is none within so many seconds."""
+        found = self.line_or_end(seconds)
+        if found is None:
+            raise Failed(f"{self.name} has ended{self.last_words()}")
+        return found
+
+    def line_or_end(self, seconds: float) -> str | None:
+        """Its next line, None after the last one. Raises Failed where there is none within so many seconds."""
         try:
             found = self._lines.get(timeout=seconds)
         except queue.Empty:
-            raise Failed(f"{self.name} says nothing for {seconds:g} s{self._last()}") from None
+            raise Failed(f"{self.name} says nothing for {seconds:g} s{self.last_words()}") from None
         if found is None:
+            self._lines.put(None)  # for whoever asks again
             self._threads[1].join(1.0)
-            raise Failed(f"{self.name} has ended{self._last()}")
         return found
+
+    def lines(self) -> Iterator[str]:
+        """The lines that it has said and nobody has taken, without waiting for more."""
+        while True:
+            try:
+                found = self._lines.get_nowait()
+            except queue.Empty:
+                return
+            if found is None:
+                self._lines.put(None)
+                return
+            yield found
 
     def fact(self, seconds: float) -> dict[str, Any]:
         """Its next JSON object; other lines, which libraries print, are passed over. Raises Failed."""
@@ -84,8 +115,14 @@ class Process:
             if isinstance(found, dict):
                 return found
 
-    def _last(self) -> str:
+    def last_words(self) -> str:
+        """The last line of its standard error, after a colon; "" where there is none."""
         return f": {self._errors[-1]}" if self._errors else ""
+
+    @property
+    def running(self) -> bool:
+        """Whether it still runs."""
+        return self.process.poll() is None
 
     def memory(self) -> int | None:
         """Its greatest resident memory so far in bytes; None where the system does not tell."""
@@ -96,20 +133,30 @@ class Process:
             return None
         return int(found.group(1)) * 1024 if found else None
 
+    def end(self, seconds: float) -> int | None:
+        """Let it end by itself and its last lines come; its exit code, None where it has not ended in so many seconds."""
+        try:
+            code = self.process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            return None
+        for thread in self._threads:
+            thread.join(PATIENCE)
+        return code
+
     def close(self) -> None:
-        """End it."""
-        if self.process.stdin is not None:
+        """End it, whatever it does."""
+        if self.process.stdin is not None:  # it was given one
             with contextlib.suppress(OSError):
                 self.process.stdin.close()
-        if not self._listens:
-            self.process.terminate()
+        if self._stop is not None and self.running:
+            self.process.send_signal(self._stop)
         try:
             self.process.wait(PATIENCE)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
 
-    def __enter__(self) -> Process:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *exception: object) -> None:
