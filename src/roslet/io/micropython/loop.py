@@ -103,9 +103,9 @@ class Loop:
         finally:
             self.busy = before
 
-    def later(self, function: "Callable[[Any], None]", argument: "Any") -> bool:
-        """Call `function(argument)` when no callback runs. False where too many wait: it is not called."""
-        if len(self._later) >= MAX_LATER:
+    def later(self, function: "Callable[[Any], None]", argument: "Any", most: int = MAX_LATER) -> bool:
+        """Call `function(argument)` when no callback runs. False where `most` wait: it is not called."""
+        if len(self._later) >= most:
             self.dropped += 1
             return False
         self._later.append((function, argument))

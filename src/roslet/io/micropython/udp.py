@@ -39,7 +39,6 @@ class Domain:
     ) -> None:
         self.loop = loop
         self.network = network
-        self.not_sent = 0
         self._datagram = datagram
         self._handlers: dict[bytes, Callable[[Any], None]] = {}
         self._closed = False
@@ -230,7 +229,7 @@ class Domain:
                     sock.sendto(whole, where)
                 except OSError:
                     # As good as lost on the way; reliable writers send it again.
-                    self.not_sent += 1
+                    self._count("datagram-not-sent")
 
     def _count(self, reason: str) -> None:
         counters = self.participant.counters

@@ -80,6 +80,36 @@ def serialized(message: "Any") -> bytes:
             size = error.size
 
 
+class Topics:
+    """The publishers and subscriptions of a node. Those of one topic are no network's business: they are paired here."""
+
+    def __init__(self) -> None:
+        self.publishers: list[Any] = []
+        self.subscriptions: list[Any] = []
+
+    def add_publisher(self, publisher: "Publisher") -> None:
+        self.publishers.append(publisher)
+        for subscription in self.subscriptions:
+            if subscription.topic == publisher.topic:
+                publisher._local.append(subscription)
+
+    def add_subscription(self, subscription: "Subscription") -> None:
+        self.subscriptions.append(subscription)
+        for publisher in self.publishers:
+            if publisher.topic == subscription.topic:
+                publisher._local.append(subscription)
+
+    def remove_subscription(self, subscription: "Subscription") -> None:
+        self.subscriptions.remove(subscription)
+        for publisher in self.publishers:
+            if subscription in publisher._local:
+                publisher._local.remove(subscription)
+
+    def publishers_of(self, subscription: "Subscription") -> int:
+        """How many of the node's own publishers a subscription hears."""
+        return len([one for one in self.publishers if subscription in one._local])
+
+
 class Publisher:
     """Publishes one topic. Serialises into a buffer of its own, which only grows."""
 
@@ -196,7 +226,7 @@ class Subscription:
 
     @property
     def publisher_count(self) -> int:
-        """Publishers connected now."""
+        """Publishers connected now, those of this node included."""
         raise NotImplementedError
 
     def wait_for_publishers(self, count: int = 1, timeout: "float | None" = None) -> bool:

@@ -8,7 +8,7 @@ import os
 import time
 
 from roslet.errors import NodeClosed, ParameterNotSet
-from roslet.io.micropython.loop import Loop, epoch_offset
+from roslet.io.micropython.loop import MAX_LATER, Loop, epoch_offset
 from roslet.node.micropython import bounds
 from roslet.node.micropython.endpoints import Future, Publisher
 from roslet.node.qos import QoS
@@ -319,7 +319,7 @@ class Node:
 
     def _shut_down(self, reason: str) -> None:
         self.log.warning("shutting down: " + reason)
-        self.loop.later(_close, self)
+        self.loop.later(_close, self, MAX_LATER + 1)  # however much waits
 
 
 def _close(node: Node) -> None:

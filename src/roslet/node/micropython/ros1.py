@@ -4,6 +4,7 @@ from struct import pack_into
 
 from roslet.engine.ros1 import answers
 from roslet.engine.ros1.engine import Engine
+from roslet.engine.ros1.links import OPEN
 from roslet.errors import (
     Fault,
     NodeClosed,
@@ -58,8 +59,7 @@ class Ros1Network:
         self.counters = engine.counters
         self.shell = Ros1Shell(engine, node.loop, bounds.CONNECTIONS, bounds.ROOM)
         self._parameters: MasterParameters | None = None
-        self._publishers: list[Publisher] = []
-        self._subscriptions: list[Subscription] = []
+        self.topics = endpoints.Topics()
         self._services: list[Service] = []
 
     def begin(self) -> None:
@@ -82,16 +82,13 @@ class Ros1Network:
     def publisher(self, topic: str, kind: "Any", qos: QoS) -> "Publisher":
         kind = message_class("ros1", kind)
         _check(qos)
-        for one in self._publishers:
+        for one in self.topics.publishers:
             if one.topic == topic:
                 if one.type is not kind:
                     raise RosletError("%s is published already, as %s" % (topic, one.type._type))
-                return one
+                return one  # type: ignore[no-any-return]
         publisher = Publisher(self, topic, kind, qos)
-        self._publishers.append(publisher)
-        for subscription in self._subscriptions:
-            if subscription.topic == topic:
-                publisher._local.append(subscription)
+        self.topics.add_publisher(publisher)
         self.settle()
         return publisher
 
@@ -100,10 +97,7 @@ class Ros1Network:
     ) -> "Subscription":
         _check(qos)
         subscription = Subscription(self, topic, message_class("ros1", kind), callback, qos, most)
-        self._subscriptions.append(subscription)
-        for publisher in self._publishers:
-            if publisher.topic == topic:
-                publisher._local.append(subscription)
+        self.topics.add_subscription(subscription)
         self.settle()
         return subscription
 
@@ -238,7 +232,7 @@ class Publisher(endpoints.Publisher):
         return len(self._entry.links) + len(self._local)
 
     def _send(self, message: "Any") -> None:
-        if self.node.is_shutdown or self not in self._network._publishers:
+        if self.node.is_shutdown or self not in self._network.topics.publishers:
             raise NodeClosed("the publisher of %s is closed" % self.topic)
         if self.type._has_header:
             message.header.seq = self.messages
@@ -274,8 +268,8 @@ class Publisher(endpoints.Publisher):
 
     def close(self) -> None:
         network = self._network
-        if self in network._publishers:
-            network._publishers.remove(self)
+        if self in network.topics.publishers:
+            network.topics.publishers.remove(self)
             network.engine.unadvertise(self._entry, network.node.loop.now())
             network.shell.update()
 
@@ -309,14 +303,12 @@ class Subscription(endpoints.Subscription):
 
     @property
     def publisher_count(self) -> int:
-        return len([link for link in self._entry.links.values() if link.state == 2])
+        links = [link for link in self._entry.links.values() if link.state == OPEN]
+        return len(links) + self._network.topics.publishers_of(self)
 
     def _disconnect(self) -> None:
         network = self._network
-        network._subscriptions.remove(self)
-        for publisher in network._publishers:
-            if self in publisher._local:
-                publisher._local.remove(self)
+        network.topics.remove_subscription(self)
         network.engine.unsubscribe(self._entry, network.node.loop.now())
         network.shell.update()
 

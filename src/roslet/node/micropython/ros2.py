@@ -60,8 +60,7 @@ class Ros2Network:
         self.context = self.domain.context
         self.counters = self.participant.counters
         self.handle = self.context.add_node(name, self.namespace, node.loop.now())
-        self.publishers: list[Publisher] = []
-        self.subscriptions: list[Subscription] = []
+        self.topics = endpoints.Topics()
         self._parameters: Any = None
         self.domain.flush()
 
@@ -91,20 +90,14 @@ class Ros2Network:
 
     def publisher(self, topic: str, kind: "Any", qos: QoS) -> "Publisher":
         publisher = Publisher(self, topic, message_class("ros2", kind), qos)
-        self.publishers.append(publisher)
-        for subscription in self.subscriptions:
-            if subscription.topic == topic:
-                publisher._local.append(subscription)
+        self.topics.add_publisher(publisher)
         return publisher
 
     def subscription(
         self, topic: str, kind: "Any", callback: "Callable[[Any], object] | None", qos: QoS, most: int
     ) -> "Subscription":
         subscription = Subscription(self, topic, message_class("ros2", kind), callback, qos, most)
-        self.subscriptions.append(subscription)
-        for publisher in self.publishers:
-            if publisher.topic == topic:
-                publisher._local.append(subscription)
+        self.topics.add_subscription(subscription)
         return subscription
 
     def service(
@@ -152,7 +145,7 @@ class Ros2Network:
             self.node._count("messages-lost")
 
     def close(self) -> None:
-        waiting = [one for one in self.publishers if one._writer.proxies]
+        waiting = [one for one in self.topics.publishers if one._writer.proxies]
         if waiting:
             self.node.loop.run_until(
                 lambda: not [one for one in waiting if not one._flushed()], CLOSE_TIMEOUT
@@ -188,7 +181,7 @@ class Publisher(endpoints.Publisher):
 
     def _send(self, message: "Any") -> None:
         network = self._network
-        if self not in network.publishers or network.node.is_shutdown:
+        if self not in network.topics.publishers or network.node.is_shutdown:
             raise NodeClosed("the publisher of %s is closed" % self.topic)
         payload = self._buffer[: message.serialize_into(self._buffer, 0)]
         writer = self._writer
@@ -202,8 +195,8 @@ class Publisher(endpoints.Publisher):
 
     def close(self) -> None:
         network = self._network
-        if self in network.publishers:
-            network.publishers.remove(self)
+        if self in network.topics.publishers:
+            network.topics.publishers.remove(self)
             network.domain.handle(self._writer.entity_id, None)
             network.context.delete_writer(network.handle, self._writer, network.node.loop.now())
             network.domain.flush()
@@ -252,14 +245,11 @@ class Subscription(endpoints.Subscription):
 
     @property
     def publisher_count(self) -> int:
-        return len(self._reader.proxies)
+        return len(self._reader.proxies) + self._network.topics.publishers_of(self)
 
     def _disconnect(self) -> None:
         network = self._network
-        network.subscriptions.remove(self)
-        for publisher in network.publishers:
-            if self in publisher._local:
-                publisher._local.remove(self)
+        network.topics.remove_subscription(self)
         network.domain.handle(self._reader.entity_id, None)
         network.context.delete_reader(network.handle, self._reader, network.node.loop.now())
         network.domain.flush()
