@@ -17,7 +17,7 @@ from roslet.gen.collect import collect
 from roslet.gen.cpp_bounds import Bounds
 from roslet.gen.cpp_message import DURATION, SUPPORT, TIME, Headers
 from roslet.gen.cpp_names import header_path
-from roslet.gen.python_package import write_if_changed
+from roslet.gen.files import write_files
 from roslet.idl import Action
 
 TYPE_CHECKING = False
@@ -71,10 +71,4 @@ def write_headers(
 
     Raises as that does, and then writes nothing. Other files there are left alone.
     """
-    files = headers(registry, names, bounds)
-    changed = []
-    for path in sorted(files):
-        full = os.path.join(directory, *path.split("/"))
-        if write_if_changed(full, files[path]):
-            changed.append(full)
-    return changed
+    return write_files(directory, headers(registry, names, bounds))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 
 from roslet.gen import python
+from roslet.gen.files import write_files
 from roslet.gen.lines import render
 from roslet.gen.python_names import attribute
 from roslet.idl import Message, Service
@@ -170,17 +171,13 @@ def bundled_stubs(registry: Registry, dialect: Dialect) -> dict[str, str]:
 def write_bundled_stubs(directory: str | os.PathLike[str]) -> list[str]:
     """Write the stubs of the bundled packages of both dialects under `directory` (`src/roslet/msgs`); what
     changed."""
-    from roslet.gen.python_package import write_if_changed
     from roslet.idl import Registry
 
-    changed = []
     both: tuple[Dialect, ...] = ("ros1", "ros2")
+    files: dict[str, str] = {}
     for dialect in both:
-        for path, text in bundled_stubs(Registry(dialect, None), dialect).items():
-            full = os.path.join(directory, *path.split("/"))
-            if write_if_changed(full, text):
-                changed.append(full)
-    return sorted(changed)
+        files.update(bundled_stubs(Registry(dialect, None), dialect))
+    return write_files(directory, files)
 
 
 if __name__ == "__main__":
