@@ -1,7 +1,7 @@
 #!/bin/sh
-# The ordinary test command. pytest comes last so that its closing line, with the real counts, ends the output;
+# The ordinary test command. The tests come last so that the line with their counts ends the output;
 # a failure of lint, types or layers is remembered and fails the command after the tests have told theirs.
-# Arguments go to pytest.
+# Arguments go to pytest; without any, every test is run.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -26,6 +26,10 @@ if [ -n "$failed" ]; then
 fi
 echo "== pytest"
 status=0
-"$python" -m pytest "$@" </dev/null || status=$?
+if [ $# -gt 0 ]; then
+    "$python" -m pytest "$@" </dev/null || status=$?
+else
+    "$python" tools/run_tests.py || status=$?
+fi
 [ -z "$failed" ] || exit 1
 exit "$status"

@@ -44,7 +44,7 @@ def command(tool: str) -> list[str]:
     module, function, extra = PACKAGES[tool]
     if importlib.util.find_spec(module) is None:
         raise ToolMissing(f"{tool} is not installed: pip install 'roslet[{extra}]', or put it on the PATH")
-    return [sys.executable, "-c", f"import sys, {module}; sys.exit({module}.{function}(sys.argv[1:]))"]
+    return [sys.executable, "-m", "roslet.gateware.wasm", module, function]
 
 
 def run(tool: str, arguments: list[str], folder: pathlib.Path) -> None:
@@ -61,7 +61,7 @@ def run(tool: str, arguments: list[str], folder: pathlib.Path) -> None:
         )
     if done.returncode:
         said = log.read_text(encoding="utf-8", errors="replace")[-SHOWN:]
-        errors = [line for line in said.splitlines() if line.startswith("ERROR")]
+        errors = [line.strip() for line in said.splitlines() if line.startswith(("ERROR", "    wasm trap"))]
         raise ToolFailed(f"{tool} failed, see {log}:\n" + ("\n".join(errors) or said))
 
 
