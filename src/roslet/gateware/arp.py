@@ -36,7 +36,7 @@ class Arp(wiring.Component):
     still being learned from. Replies and requests are sent in turn. `drop_arp`: see `ArpRx`.
     """
 
-    def __init__(self, cache_width: int = 4, resolving: int = 4) -> None:
+    def __init__(self, cache_width: int = 4, resolving: int | None = None) -> None:
         self._cache = ArpCache(cache_width, resolving)
         super().__init__(
             {

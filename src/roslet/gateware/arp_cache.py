@@ -20,6 +20,9 @@ TRIES = 6
 MAX_WIDTH = 8
 """2**8 entries are read one after another for each question: 2.6 us at 100 MHz."""
 
+RESOLVING = 4
+"""How many addresses are asked for at once, unless told otherwise or there are fewer entries."""
+
 _MIN_VISIT = 6
 _SCAN_LAG = 2
 """An entry is visible a cycle after it is addressed, and whether it is the one that is looked for known a cycle later."""
@@ -52,7 +55,9 @@ class ArpCache(wiring.Component):
     within one tick and the cycles of an answer. `enable` stays high once it is. All is forgotten at reset.
     """
 
-    def __init__(self, width: int = 4, resolving: int = 4) -> None:
+    def __init__(self, width: int = 4, resolving: int | None = None) -> None:
+        if resolving is None:
+            resolving = min(RESOLVING, 2**width)
         if not 1 <= width <= MAX_WIDTH:
             raise ValueError(f"a cache has 2**1 to 2**{MAX_WIDTH} entries, not 2**{width}")
         if not 1 <= resolving <= 2**width:
