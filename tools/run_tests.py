@@ -1,5 +1,5 @@
-"""Runs every test, in two parts side by side: those of gateware that need nothing but a processor yield to the others, which
-wait for peers most of the time and judge by the clock. The last line has the counts of both.
+"""Runs every test, in two parts side by side: those that need nothing but a processor yield to the others, which wait for
+peers most of the time and judge by the clock. The last line has the counts of both.
 
     python tools/run_tests.py
 
@@ -22,9 +22,12 @@ PATIENCE = 900
 
 
 def yielding() -> list[str]:
-    """The tests that need nothing but a processor: blocks simulated cycle by cycle, and proofs."""
-    folder = ROOT / "tests" / "gateware"
-    return [str(path.relative_to(ROOT)) for path in (*sorted(folder.glob("test_*.py")), folder / "typed")]
+    """The tests that need nothing but a processor: blocks simulated cycle by cycle, proofs, C++ headers compiled."""
+    tests = ROOT / "tests"
+    found = [tests / "gateware" / "typed"]
+    for pattern in ("gateware/test_*.py", "gen/test_cpp*.py"):
+        found += sorted(tests.glob(pattern))
+    return [str(path.relative_to(ROOT)) for path in found]
 
 
 def counts(report: pathlib.Path) -> Counter[str]:
