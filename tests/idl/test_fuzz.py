@@ -140,8 +140,8 @@ def test_large_texts_take_linear_time(text: str, dialect: Dialect) -> None:
             assert parse(text, TypeName("pkg", kind, "Thing"), dialect).dialect == dialect
         except DefinitionError as error:
             assert len(str(error)) < 400
-    # Linear readers need some 50 ms for these; quadratic ones minutes.
-    assert time.process_time() - start < 5
+    # Linear readers need 0.05 to 2 s for these, several times as long beside other work; quadratic ones minutes.
+    assert time.process_time() - start < 20
 
 
 def test_the_fuzz_target_runs_without_a_fuzzer() -> None:
