@@ -53,7 +53,7 @@ def main():
         make = participant.create_writer if role == "talker" else participant.create_reader
         endpoint = make("rt/chatter", TYPE, policies, reactor.now())
         domain.flush()
-    say("ready")
+        say("ready")  # before what another thread may hear says so
     if role == "talker":
         reactor.run_until(lambda: endpoint.proxies, 60.0)
         for number in range(count):
