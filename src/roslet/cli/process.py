@@ -32,8 +32,8 @@ class Process:
     """One program that says facts as JSON lines.
 
     It is asked to end by the end of its standard input and, where there is one, the signal `stop`; as a context manager,
-    with the block.
-    Without an environment it has this process's.
+    with the block. Without an environment it has this process's. What nobody takes of its lines is kept: whoever starts it
+    reads it.
     """
 
     def __init__(
@@ -145,9 +145,9 @@ class Process:
 
     def close(self) -> None:
         """End it, whatever it does."""
-        if self.process.stdin is not None:  # it was given one
-            with contextlib.suppress(OSError):
-                self.process.stdin.close()
+        assert self.process.stdin is not None
+        with contextlib.suppress(OSError):
+            self.process.stdin.close()
         if self._stop is not None and self.running:
             self.process.send_signal(self._stop)
         try:

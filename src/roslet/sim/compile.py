@@ -85,7 +85,7 @@ def build(top: Any, platform: Any = None) -> pathlib.Path:
     Where it has an attribute `verilog`, those files have the modules of its instances. A `platform` of Amaranth has its
     say in how the design is elaborated.
 
-    Raises CompileFailed.
+    Raises CompileFailed, `units.UnexpectedDesign`.
     """
     text = rtlil(top, platform)
     yosys, headers, version = _yosys()
