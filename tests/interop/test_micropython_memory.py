@@ -47,8 +47,8 @@ def pinger(network: str, count: int, name: str, *rest: str) -> list[str]:
 
 
 def drift(lines: list[str]) -> int:
-    """By how much what the heap holds grew from the first half to the second: the least of each, as what is under way at the
-    moment comes and goes."""
+    """By how much what the heap holds at rest grew from the first half to the second: the least of each, as an announcement
+    may be under way at the moment."""
     held = [int(line.split()[2]) for line in lines if line.startswith("memory")][1:]
     half = len(held) // 2
     assert half >= 5, lines

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pathlib
 import select as system_select
 import socket
 import threading
@@ -352,3 +353,17 @@ def test_a_port_in_use_is_an_error_and_leaves_no_socket() -> None:
         with pytest.raises(OSError):
             listen("127.0.0.1", server.getsockname()[1])
         assert len(os.listdir("/proc/self/fd")) == before
+
+
+def test_who_calls_a_loop_that_is_closed_writes_to_nobody(tmp_path: pathlib.Path) -> None:
+    loop = Reactor()
+    number = loop._wake_write
+    loop.close()
+    with (tmp_path / "file").open("wb", buffering=0) as stream:
+        os.dup2(stream.fileno(), number)  # the descriptor is another file's by now
+        try:
+            loop.call_soon(lambda: None)
+            loop.wake()
+        finally:
+            os.close(number)
+    assert (tmp_path / "file").read_bytes() == b""

@@ -197,8 +197,8 @@ class Reactor:
             self._awake = True
             try:
                 os.write(self._wake_write, b"\0")
-            except BlockingIOError:
-                return  # full: it wakes the loop as it is
+            except OSError:
+                return  # full: it wakes the loop as it is; or closed: nobody is left to wake
 
     def interrupt(self) -> None:
         """The same whoever calls: a signal handler too, which runs in the very thread that sleeps. Takes no lock."""
@@ -469,8 +469,10 @@ class Reactor:
         for poller in (self._control, self._all):
             if hasattr(poller, "close"):
                 poller.close()
+        # First out of reach: another thread may call soon, and the number may be another file's by then.
+        write, self._wake_write = self._wake_write, -1
+        os.close(write)
         os.close(self._wake_read)
-        os.close(self._wake_write)
 
     def abandon(self) -> None:
         """Close the descriptors of a loop that a forked child has inherited."""

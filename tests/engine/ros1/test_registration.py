@@ -142,7 +142,7 @@ def test_a_second_node_of_the_same_name_shuts_the_first_down() -> None:
     network.run(1.0)
     assert len(asked) == 1 and "new node registered with same name" in asked[0]
     assert talker.engine.shutdown_reason == asked[0]
-    for method, arguments in talker.engine.closing_calls():
+    for method, arguments in talker.engine.begin_close(network.now):
         talker.engine.call_master(method, arguments, lambda value, error, now: None, network.now)
     talker.update()
     network.run(1.0)
@@ -177,3 +177,18 @@ def test_a_call_that_the_master_does_not_answer_times_out() -> None:
     results = talker.ask_master("getParam", "/x")
     network.run(engine_module.CALL_TIMEOUT + 1)
     assert isinstance(results[0], CallTimeout)
+
+
+def test_a_node_that_closes_seeks_no_publisher_any_more() -> None:
+    network, _master, listener, _ = world()
+    subscription, _ = listener.subscriber("/chatter")
+    network.run(1.0)
+    subscription.update(["http://gamma:%d/" % (7000 + index) for index in range(500)], network.now)
+    listener.update()
+    network.run(0.1)
+    assert subscription._retry or subscription._asking
+    calls = listener.engine.begin_close(network.now)
+    assert [method for method, _ in calls] == ["unregisterSubscriber"]
+    assert subscription.deadline() is None
+    network.run(10.0)
+    assert not subscription._asking and not subscription._retry and subscription.deadline() is None

@@ -441,23 +441,33 @@ class Engine:
 
     # -- the end
 
-    def closing_calls(self) -> "list[tuple[str, list[object]]]":
-        """What to tell the master at the end, in this order."""
+    def begin_close(self, now: float) -> "list[tuple[str, list[object]]]":
+        """Seek no publisher any more, and begin no call that waits; what to tell the master, in this order: nothing to one
+        that is lost."""
         calls: list[tuple[str, list[object]]] = []
-        for entry in self.registrations.entries:
-            calls.append(self.registrations.withdrawal(entry))
-        for key in self._watched:
-            calls.append(("unsubscribeParam", [self.name, self.uri, key]))
+        if not self.registrations.master_lost:
+            for entry in self.registrations.entries:
+                calls.append(self.registrations.withdrawal(entry))
+            for key in self._watched:
+                calls.append(("unsubscribeParam", [self.name, self.uri, key]))
+        self.registrations.forget()
+        for entries in self.subscriptions.values():
+            for subscription in entries:
+                subscription.seek_nobody()
+        self._fail_waiting(now)
         return calls
 
     def close(self, now: float) -> None:
         """Fail what is under way. The shell has closed the connections."""
         self.registrations.forget()
         self._master.close(now)
-        waiting, self._slave_waiting = self._slave_waiting, []
+        self._fail_waiting(now)
         for client, _ in self._slave_calls:
             client.close(now)
         self.pump(now)
+
+    def _fail_waiting(self, now: float) -> None:
+        waiting, self._slave_waiting = self._slave_waiting, []
         for _, _, _, done in waiting:
             done(None, Unreachable("the node was closed"), now)
 

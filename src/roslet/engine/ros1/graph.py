@@ -184,6 +184,12 @@ class Subscription:
             if uri not in self.links and uri not in self._asking:
                 self._ask(uri, now)
 
+    def seek_nobody(self) -> None:
+        """Keep the links that there are, and ask no publisher for another."""
+        self.publishers = ()
+        self._recheck = None
+        self._retry.clear()
+
     def _usable(self, uris: "list[str]") -> "dict[str, int]":
         known: dict[str, int] = {}
         for uri in uris:

@@ -141,8 +141,7 @@ class Ros1Network:
         """Tell the master, then close."""
         engine = self.engine
         left: list[Future] = []
-        calls = [] if engine.registrations.master_lost else engine.closing_calls()
-        engine.registrations.forget()
+        calls = engine.begin_close(self.node.loop.now())
         for method, arguments in calls:
             future = Future(self.node, method)
             engine.call_master(method, arguments, _into(future), self.node.loop.now())

@@ -247,8 +247,7 @@ class Ros1Network(MasterApi, Network):
         engine = self.engine
         left: list[tuple[str, list[object], Future[Any]]] = []
         with self.reactor.lock:
-            calls = [] if engine.registrations.master_lost else engine.closing_calls()
-            engine.registrations.forget()
+            calls = engine.begin_close(self.reactor.now())
             for method, arguments in calls:
                 future: Future[Any] = Future(self.reactor, method)
                 engine.call_master(method, arguments, into(future), self.reactor.now())
