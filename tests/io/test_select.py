@@ -357,7 +357,7 @@ def test_a_port_in_use_is_an_error_and_leaves_no_socket() -> None:
 
 def test_who_calls_a_loop_that_is_closed_writes_to_nobody(tmp_path: pathlib.Path) -> None:
     loop = Reactor()
-    number = loop._wake_write
+    number = loop._waker._write
     loop.close()
     with (tmp_path / "file").open("wb", buffering=0) as stream:
         os.dup2(stream.fileno(), number)  # the descriptor is another file's by now
@@ -367,3 +367,33 @@ def test_who_calls_a_loop_that_is_closed_writes_to_nobody(tmp_path: pathlib.Path
         finally:
             os.close(number)
     assert (tmp_path / "file").read_bytes() == b""
+
+
+@pytest.mark.parametrize("what", ["call", "timer", "call of the loop"])
+def test_the_background_thread_takes_no_user_call_from_the_descriptor(loop: Reactor, what: str) -> None:
+    """Somebody who watches `fileno`, as an asyncio loop does, is told of it however late he looks."""
+    pipe(loop)  # control traffic, which the background thread serves
+
+    def asked() -> bool:
+        watched = system_select.poll()
+        watched.register(loop.fileno(), system_select.POLLIN)
+        return bool(watched.poll(0))
+
+    assert not asked()
+    done: list[int] = []
+    if what == "call":
+        loop.call_soon(lambda: done.append(1), user=True)
+    elif what == "timer":
+        loop.call_at(loop.now(), lambda: done.append(1), user=True)
+    else:
+        loop.call_soon(lambda: loop.call_soon(lambda: done.append(1), user=True))
+    ran: list[int] = []
+    loop.call_soon(lambda: ran.append(1))  # the background thread has had a turn since
+    deadline = time.monotonic() + 5.0
+    while not ran or loop._waker.awake:
+        assert time.monotonic() < deadline
+        time.sleep(0.001)
+    assert asked() and not done
+    assert loop.run_until(lambda: done, 1.0)
+    loop.run_turn(0.0)
+    assert not asked()

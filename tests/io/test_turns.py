@@ -103,7 +103,7 @@ def test_no_wake_is_lost_when_another_comes_while_one_is_taken(
     spinning.start()
     until(lambda: reactor._owner == spinning.ident)
     reactor.wake()
-    until(lambda: woken and not reactor._awake)
+    until(lambda: woken and not reactor._waker.awake)
     time.sleep(0.05)  # let it sleep again
     stop.set()
     reactor.wake()

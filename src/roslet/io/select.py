@@ -101,6 +101,44 @@ class _Timers:
         return None
 
 
+class _Waker:
+    """A pipe whose end `fd` is readable from a call of `wake` until `heard`, which is its handler."""
+
+    def __init__(self) -> None:
+        self.fd, self._write = os.pipe()
+        os.set_blocking(self.fd, False)
+        os.set_blocking(self._write, False)
+        self.awake = False
+
+    def wake(self) -> None:
+        if not self.awake:
+            self.awake = True
+            self.interrupt()
+
+    def interrupt(self) -> None:
+        """The same from a signal handler: looks at nothing, takes no lock."""
+        try:
+            os.write(self._write, b"\0")
+        except OSError:
+            return  # full: it is readable as it is; or closed: nobody is left to wake
+
+    def heard(self, events: int) -> None:
+        try:
+            os.read(self.fd, 64)
+        except BlockingIOError:
+            return
+        finally:
+            # Not before: a byte written in between would be read here too, and every later wake would believe it still to
+            # come. Who finds this true writes nothing, and what he wants done is seen in this very turn.
+            self.awake = False
+
+    def close(self) -> None:
+        # First out of reach: another thread may call soon, and the number may be another file's by then.
+        write, self._write = self._write, -1
+        os.close(write)
+        os.close(self.fd)
+
+
 class Reactor:
     """The loop. Any thread may call any method; `lock` guards control state and is never held while user code runs."""
 
@@ -123,6 +161,7 @@ class Reactor:
         self._callers = 0  # threads that would serve user code and wait for the turn
         self._lent = False  # whether the background thread has ever handed the loop to a spinner
         self._owner = 0  # the thread that has the turn
+        self._serves_users = False  # whether it serves user code
         self._spinners = 0
         self._user_turns = 0  # of the loop, in which user code was served
         self._idle = threading.Event()
@@ -135,11 +174,10 @@ class Reactor:
         self._brisk = False  # whether the last sleep was a short one
         self._vain = 0  # looks in vain since the last good one
         self._skips = 0  # sleeps before the next look
-        self._wake_read, self._wake_write = os.pipe()
-        os.set_blocking(self._wake_read, False)
-        os.set_blocking(self._wake_write, False)
-        self._awake = False
-        self.register(self._wake_read, self._woken)
+        # Two, since a loop that serves control traffic only must not take from `fileno` that a user's call waits.
+        self._waker, self._user_waker = _Waker(), _Waker()
+        self.register(self._waker.fd, self._waker.heard)
+        self.register(self._user_waker.fd, self._user_waker.heard, user=True)
 
     # -- registration
 
@@ -171,13 +209,13 @@ class Reactor:
             soonest = timers.deadline()
             timers.add(timer)
         if soonest is None or when < soonest:
-            self.wake()
+            self._wake(user)
         return timer
 
     def call_soon(self, function: Callable[[], None], user: bool = False) -> None:
         """Call `function` in the loop's next turn."""
         (self._user_soon if user else self._soon).append(function)
-        self.wake()
+        self._wake(user)
 
     def now(self) -> float:
         return monotonic()
@@ -193,29 +231,16 @@ class Reactor:
 
     def wake(self) -> None:
         """End the loop's present sleep, unless the caller is the loop."""
-        if not self._awake and self._owner != threading.get_ident():
-            self._awake = True
-            try:
-                os.write(self._wake_write, b"\0")
-            except OSError:
-                return  # full: it wakes the loop as it is; or closed: nobody is left to wake
+        self._wake(False)
 
     def interrupt(self) -> None:
         """The same whoever calls: a signal handler too, which runs in the very thread that sleeps. Takes no lock."""
-        try:
-            os.write(self._wake_write, b"\0")
-        except BlockingIOError:
-            return
+        self._waker.interrupt()
 
-    def _woken(self, events: int) -> None:
-        try:
-            os.read(self._wake_read, 64)
-        except BlockingIOError:
-            return
-        finally:
-            # Not before: a byte written in between would be read here too, and every later wake would believe it still to
-            # come. Who finds this true writes nothing, and what he wants done is seen in this very turn.
-            self._awake = False
+    def _wake(self, user: bool) -> None:
+        """Likewise; with `user`, of a loop that serves users: a caller that is another wakes nobody but tells `fileno`."""
+        if self._owner != threading.get_ident() or (user and not self._serves_users):
+            (self._user_waker if user else self._waker).wake()
 
     # -- running
 
@@ -281,13 +306,15 @@ class Reactor:
                 with self.lock:
                     self._callers -= 1
         self._owner = threading.get_ident()
-        if self._awake:
+        self._serves_users = user
+        if self._waker.awake:
             # It was for whoever had the turn; it must not end our first sleep.
-            self._woken(READ)
+            self._waker.heard(READ)
         return True
 
     def _give_up_turn(self) -> None:
         self._owner = 0
+        self._serves_users = False
         self._turn.release()
         if self._waiting:
             with self._changed:
@@ -430,7 +457,7 @@ class Reactor:
     # -- the background thread
 
     def _ensure_thread(self) -> None:
-        if self._thread is None and len(self._handlers) > 1:
+        if self._thread is None and len(self._handlers) > 2:  # more than the two that wake
             self._thread = threading.Thread(target=self._background, name="roslet", daemon=True)
             self._thread.start()
 
@@ -469,10 +496,8 @@ class Reactor:
         for poller in (self._control, self._all):
             if hasattr(poller, "close"):
                 poller.close()
-        # First out of reach: another thread may call soon, and the number may be another file's by then.
-        write, self._wake_write = self._wake_write, -1
-        os.close(write)
-        os.close(self._wake_read)
+        self._waker.close()
+        self._user_waker.close()
 
     def abandon(self) -> None:
         """Close the descriptors of a loop that a forked child has inherited."""
@@ -481,8 +506,8 @@ class Reactor:
         for poller in (self._control, self._all):
             if hasattr(poller, "close"):
                 poller.close()
-        os.close(self._wake_read)
-        os.close(self._wake_write)
+        self._waker.close()
+        self._user_waker.close()
 
 
 _reactor: Reactor | None = None

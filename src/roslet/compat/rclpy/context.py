@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
     from roslet.compat.rclpy._entity import Bell
 
+# Seconds that a thread whose spinning ends leaves to the callbacks of the end.
+CALLBACKS = 1.0
+
 _running: weakref.WeakSet[Context] = weakref.WeakSet()
 
 
@@ -32,6 +35,9 @@ class Context:
         self._nodes: list[weakref.ref[Any]] = []
         self._begun = False
         self._ok = False
+        self._ender = 0  # the thread that calls the callbacks
+        self._called = threading.Event()  # cleared while they are called
+        self._called.set()
         self._domain = 0
         self.arguments = Arguments([])
 
@@ -135,11 +141,22 @@ class Context:
                 if node is not None:
                     # rclpy asks every second node itself: its list changes under its loop. Programs count the calls.
                     (node._node_end if number % 2 else node.destroy_node)()
+            self._ender = threading.get_ident()
+            self._called.clear()
             self._ok = False
-        for get in callbacks:
-            callback = get()
-            if callback is not None:
-                callback()
+        try:
+            for get in callbacks:
+                callback = get()
+                if callback is not None:
+                    callback()
+        finally:
+            self._called.set()
+
+    def _wait_for_callbacks(self) -> None:
+        """Let the callbacks of the end, which another thread calls, come before what follows it in this one. For a moment at
+        most, since one of them may wait for this thread."""
+        if self._ender != threading.get_ident():
+            self._called.wait(CALLBACKS)
 
     def destroy(self) -> None:
         """Nothing more than `try_shutdown`: memory is Python's."""

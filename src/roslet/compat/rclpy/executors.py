@@ -209,6 +209,7 @@ class Executor:
             if self._is_shutdown:
                 raise ShutdownException
             if not self._context.ok():
+                self._context._wait_for_callbacks()
                 raise ExternalShutdownException
             if reached is not None and reached():
                 raise ConditionReachedException
