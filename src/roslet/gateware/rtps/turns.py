@@ -23,8 +23,9 @@ class Turns(wiring.Component):
     greeted; `announce`, everybody; `sweep`, each proxy once; `alive` and `matched`, the participants and user proxies that
     there are. `job` is what is next while `valid`, and steady until `taken` is high for a cycle.
 
-    One proxy is looked at in a cycle; what is due for one that is gone is forgotten. What becomes due for the job that is
-    taken, in that cycle or later, is another job. Greetings and announcements wait while anything else is found.
+    One proxy is looked at in a cycle, and stands at `job` two cycles later; what is due for one that is gone is forgotten.
+    What becomes due for the job that is taken, in that cycle or later, is another job. Greetings and announcements wait
+    while anything else is found.
     """
 
     def __init__(self, peers: PeerMap) -> None:
@@ -53,16 +54,15 @@ class Turns(wiring.Component):
         sweep, sweeping = Signal(), Signal()  # from the next round on, in this one
 
         is_due, there, last = Signal(), Signal(), Signal()
-        found = Signal()
+        found, candidate = Signal(), Signal(JOB)  # a cycle after it was looked at
         m.d.comb += [
             is_due.eq(Mux(user, vectors[1].bit_select(index, 1), vectors[0].bit_select(index, 1))),
             there.eq(Mux(user, self.matched.bit_select(index, 1), self.alive.bit_select(index[2:], 1))),
             last.eq(index == Mux(user, len(vectors[1]) - 1, len(vectors[0]) - 1)),
-            found.eq(~self.valid & (is_due | sweeping) & there),
         ]
-        with m.If(~self.valid):
-            m.d.sync += [index.eq(index + 1), self.valid.eq(found | greetings.any() | announcing)]
-            m.d.sync += job.eq(Cat(user, Cat(index, C(0, 8 - len(index))), is_due, C(0, 2)))
+        with m.If(~found & ~self.valid):
+            m.d.sync += [found.eq((is_due | sweeping) & there), index.eq(index + 1)]
+            m.d.sync += candidate.eq(Cat(user, Cat(index, C(0, 8 - len(index))), is_due, C(0, 2)))
             with m.If(last):
                 m.d.sync += [index.eq(0), user.eq(~user)]
                 with m.If(user):
@@ -70,10 +70,14 @@ class Turns(wiring.Component):
             for n, vector in enumerate(vectors):
                 with m.If(user == n):
                     m.d.sync += vector.bit_select(index, 1).eq(0)
-            with m.If(~found & greetings.any()):
+        with m.If(~self.valid):
+            m.d.sync += [job.eq(candidate), self.valid.eq(found | greetings.any() | announcing)]
+            with m.If(found):
+                m.d.sync += found.eq(0)
+            with m.Elif(greetings.any()):
                 slot = lowest(greetings)
                 m.d.sync += [job.greet.eq(1), job.index.eq(slot), greetings.bit_select(slot, 1).eq(0)]
-            with m.Elif(~found & announcing):
+            with m.Elif(announcing):
                 m.d.sync += [job.announce.eq(1), announcing.eq(0)]
         with m.Elif(self.taken):
             m.d.sync += self.valid.eq(0)
