@@ -31,8 +31,8 @@ def built(monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...]]:
     """What the placer is asked for; it answers FIGURES."""
     asked: list[tuple[Any, ...]] = []
 
-    def build(*given: Any) -> dict[str, Any]:
-        asked.append(given)
+    def build(*given: Any, **how: Any) -> dict[str, Any]:
+        asked.append((*given, how))
         return dict(FIGURES)
 
     monkeypatch.setattr(lattice, "build", build)
@@ -76,9 +76,18 @@ def test_a_clock_that_is_too_slow_is_shown_and_fails(
         "clk          90.0  100.0  too slow",
         "phy_rx_clk  140.5   25.0",
     ]
-    chip, _, name, folder, goals, seed = built[0]
-    assert (chip, name, folder, seed) == (lattice.ECP5, "udp_tx_rx", tmp_path, 1)
+    chip, _, name, folder, goals, how = built[0]
+    assert (chip, name, folder) == (lattice.ECP5, "udp_tx_rx", tmp_path)
+    assert how == {"seed": 1, "seeds": 1, "small": False}
     assert goals == {"clk": 100.0, "phy_rx_clk": 25.0, "phy_tx_clk": 25.0}
+
+
+def test_it_can_be_placed_again_and_made_smaller(
+    run: Run, tmp_path: pathlib.Path, built: list[tuple[Any, ...]]
+) -> None:
+    words = ("--target", "ecp5", "--seed", "3", "--seeds", "4", "--small", "--output", tmp_path)
+    run("gateware", "build", "udp-tx-rx", *words)
+    assert built[0][-1] == {"seed": 3, "seeds": 4, "small": True}
 
 
 @pytest.mark.parametrize(

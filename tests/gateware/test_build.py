@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import subprocess
@@ -220,6 +221,39 @@ def test_only_a_plain_read_may_give_anything_of_what_is_written_with_it(
     assert free == (
         promised.replace("COLLISION_X_MASK 1'0", "COLLISION_X_MASK 1'1") if anything else promised
     )
+
+
+@pytest.mark.parametrize("chip", [lattice.ECP5, lattice.ICE40], ids=["ecp5", "ice40"])
+def test_a_design_can_be_made_small(chip: lattice.Chip, tmp_path: Path) -> None:
+    found = lattice.build(chip, Pinned(Blink(), ("limit",)), "blink", tmp_path, {"clk": 12.0}, small=True)
+    assert found["flip_flops"] == 13 and found["met"] and found["luts"]["total"] >= 6
+
+
+def test_the_best_of_several_places_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    speeds = {"4": 90.0, "5": 97.0, "6": 95.0, "7": 101.0, "8": 140.0}
+    seeds: list[str] = []
+
+    def run(tool: str, arguments: list[str], folder: Path) -> None:
+        if tool == "yosys":
+            (folder / "blink.json").write_text('{"modules": {"blink": {"cells": {}}}}')
+            return
+        seed = arguments[arguments.index("--seed") + 1]
+        seeds.append(seed)
+        fmax = {"clk": {"achieved": speeds[seed], "constraint": 100.0}}
+        (folder / arguments[arguments.index("--report") + 1]).write_text(json.dumps({"fmax": fmax}))
+        (folder / arguments[arguments.index("--textcfg") + 1]).write_text(seed)
+
+    monkeypatch.setattr(toolchain, "run", run)
+
+    def best(first: int, many: int) -> tuple[object, ...]:
+        top = Pinned(Blink(), ("limit",))
+        found = lattice.build(lattice.ECP5, top, "blink", tmp_path, {"clk": 100.0}, first, many)
+        kept = (tmp_path / "blink.config").read_text()
+        return found["seed"], found["met"], found["clocks"]["clk"]["fmax"], kept
+
+    assert best(4, 3) == (5, False, 97.0, "5")
+    assert best(4, 5) == (7, True, 101.0, "7") and seeds[3:] == ["4", "5", "6", "7"]
+    assert not list(tmp_path.glob("*.tried.*"))
 
 
 def test_what_is_too_large_for_a_chip_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

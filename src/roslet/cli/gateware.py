@@ -102,6 +102,16 @@ def add(parser: argparse.ArgumentParser) -> None:
     build.add_argument(
         "--seed", type=count, default=1, metavar="N", help="where the placer begins (default 1)"
     )
+    build.add_argument(
+        "--seeds",
+        type=count,
+        default=1,
+        metavar="N",
+        help="of how many beginnings the best is taken, until the clocks are fast enough (default 1)",
+    )
+    build.add_argument(
+        "--small", action="store_true", help="map for fewer LUTs, a tenth or so; clocks are slower then"
+    )
 
     gateware_sim.add(group)
 
@@ -174,7 +184,8 @@ def run_build(arguments: argparse.Namespace) -> int:
             result["settings_flip_flops"] = top.bits
         phy_mhz = PHY_MHZ[arguments.phy]
         goals = {"clk": mhz, "phy_rx_clk": phy_mhz, "phy_tx_clk": phy_mhz}
-        result.update(lattice.build(chip, top, identifier, folder, goals, arguments.seed))
+        tries = {"seed": arguments.seed, "seeds": arguments.seeds, "small": arguments.small}
+        result.update(lattice.build(chip, top, identifier, folder, goals, **tries))
     _show(arguments, result)
     return OK if result.get("met", True) else FAILED
 

@@ -24,8 +24,9 @@ RESOLVING = 4
 """How many addresses are asked for at once, unless told otherwise or there are fewer entries."""
 
 _MIN_VISIT = 6
-_SCAN_LAG = 2
-"""An entry is visible a cycle after it is addressed, and whether it is the one that is looked for known a cycle later."""
+_SCAN_LAG = 3
+"""An entry is visible two cycles after it is addressed, since block RAM is slow, and whether it is the one that is looked
+for known a cycle later."""
 
 
 class ArpCache(wiring.Component):
@@ -38,11 +39,11 @@ class ArpCache(wiring.Component):
     `retry_count` requests (one at least) were sent; `retry_interval` after the last of them it has `failed`, and for as long
     again, so that whoever asks now and then gets to know; after that a question begins anew. Otherwise nothing is known yet:
     a request is under way, or `resolving` others are.
-    An answer takes 4 cycles where it is computed, up to 2**width + 5 otherwise, and while the cache is busy as much again
-    and 5 more.
+    An answer takes 4 cycles where it is computed, up to 2**width + 7 otherwise, and while the cache is busy as much again
+    and 7 more.
 
     **Requests**: `ask` is high for one cycle when a request for `ask_ip` shall be sent; never while `ask_ready` is low. The
-    first is sent 2 cycles after the answer to the question, or else when the entry is visited next.
+    first is sent 3 cycles after the answer to the question, or else when the entry is visited next.
 
     **What is learned**: while `learn` is high, which holds until `learned` is, `ip` has the hardware address `mac`. An entry
     of that address takes it, whether it was asked for or not, as in RFC 826. Without an entry the address is remembered only
@@ -93,14 +94,16 @@ class ArpCache(wiring.Component):
         tick = self._width + self._visit
         pair = data.StructLayout({"ip": 32, "mac": 48})
         status = data.StructLayout({"state": 2, "tries": TRIES, "left": INTERVAL - tick})
-        m.submodules.pairs = pairs = memory.Memory(shape=pair, depth=count, init=[])
-        m.submodules.statuses = statuses = memory.Memory(shape=status, depth=count, init=[])
+        block = {"ram_style": "block"}  # of LUTs it would be a twentieth of all that UDP takes
+        m.submodules.pairs = pairs = memory.Memory(shape=pair, depth=count, init=[], attrs=block)
+        m.submodules.statuses = statuses = memory.Memory(shape=status, depth=count, init=[], attrs=block)
         pair_read, pair_write = pairs.read_port(), pairs.write_port()
         status_read, status_write = statuses.read_port(), statuses.write_port()
-        index = Signal(self._width)  # of the entry that is written, or read, to be visible a cycle later
+        index = Signal(self._width)  # of the entry that is written, or read, to be visible two cycles later
         for port in (pair_read, pair_write, status_read, status_write):
             m.d.comb += port.addr.eq(index)
-        known, entry, new = pair_read.data, status_read.data, status_write.data
+        known, entry, new = Signal(pair), Signal(status), status_write.data
+        m.d.sync += [known.eq(pair_read.data), entry.eq(status_read.data)]
 
         # What is being done
         key = Signal(32)
@@ -109,7 +112,7 @@ class ArpCache(wiring.Component):
 
         # What a scan has found
         step = Signal(range(count + _SCAN_LAG))
-        shown, showing = Signal(self._width), Signal()
+        read, reading, shown, showing = Signal(self._width), Signal(), Signal(self._width), Signal()
         hit, hit_at = Signal(), Signal(self._width)
         free, usable, candidate = Signal(), Signal(), Signal(self._width)
         pending = Signal(range(self._resolving + 1))
@@ -140,7 +143,7 @@ class ArpCache(wiring.Component):
                 )
             ),
         ]
-        m.d.sync += shown.eq(index)
+        m.d.sync += [read.eq(index), shown.eq(read), showing.eq(reading)]
 
         with m.FSM(init="CLEAR"):
             with m.State("CLEAR"):
@@ -149,7 +152,7 @@ class ArpCache(wiring.Component):
                 with m.If(index == count - 1):
                     m.next = "IDLE"
             with m.State("IDLE"):
-                m.d.sync += [index.eq(turn), step.eq(0), showing.eq(0), pending.eq(0)]
+                m.d.sync += [index.eq(turn), step.eq(0), reading.eq(0), showing.eq(0), pending.eq(0)]
                 m.d.sync += [hit.eq(0), free.eq(0), usable.eq(0), computed.eq(0)]
                 with m.If(due):
                     m.d.sync += [due.eq(0), index.eq(visited), visited.eq(visited + 1), learning.eq(0)]
@@ -177,7 +180,7 @@ class ArpCache(wiring.Component):
                     ]
                     m.next = "SCAN"
             with m.State("SCAN"):
-                m.d.sync += [step.eq(step + 1), index.eq(index + 1), showing.eq(step < count)]
+                m.d.sync += [step.eq(step + 1), index.eq(index + 1), reading.eq(step < count)]
                 with m.If(showing):
                     m.d.sync += [hit.eq((known.ip == key) & (entry.state != FREE)), hit_at.eq(shown)]
                     with m.If(asking):
@@ -199,7 +202,9 @@ class ArpCache(wiring.Component):
                     m.d.comb += [self.learned.eq(1), pair_write.en.eq(1), status_write.en.eq(1)]
                     m.next = "IDLE"
                 with m.Else():
-                    m.next = "ANSWER"
+                    m.next = "HIT READ"
+            with m.State("HIT READ"):
+                m.next = "ANSWER"
             with m.State("ANSWER"):
                 m.d.comb += [
                     lookup.done.eq(1),
@@ -219,6 +224,8 @@ class ArpCache(wiring.Component):
                         m.d.sync += turn.eq(candidate + 1)
                         m.next = "READ"
             with m.State("READ"):
+                m.next = "READ ENTRY"
+            with m.State("READ ENTRY"):
                 m.next = "VISIT"
             with m.State("VISIT"):
                 m.d.comb += [

@@ -80,7 +80,7 @@ class _Slot(wiring.Component):
         key = Cat(fragment[name] for name in _KEY)
         its_key = Signal(len(key))
         suspect = Signal()
-        age = Signal(32)
+        left = Signal(32)  # cycles until it is forgotten
         ranges = [Signal(self._range, name=f"range{n}") for n in range(self._count)]
         new = Signal(self._range)
         units, last_start = Signal.like(self.stop), Signal.like(self.stop)
@@ -92,11 +92,11 @@ class _Slot(wiring.Component):
             new.last.eq(~fragment.more),
             self.known.eq(self.busy & self.same),
             self.evictable.eq(self.given_up | suspect),
-            self.expired.eq(self.busy & (age >= self.expiration)),
+            self.expired.eq(self.busy & (left == 0)),
         ]
         m.d.sync += self.same.eq(its_key == key)
         with m.If(self.busy & ~self.expired):
-            m.d.sync += age.eq(age + 1)
+            m.d.sync += left.eq(left - 1)
 
         at_hand = ranges[0]
         tail, its_tail = fragment.length[:_UNIT], self.total[:_UNIT]
@@ -119,7 +119,7 @@ class _Slot(wiring.Component):
                 self.busy.eq(1),
                 suspect.eq(self.same),
                 self.given_up.eq(0),
-                age.eq(0),
+                left.eq(self.expiration),
                 has_last.eq(0),
                 *(one.valid.eq(0) for one in ranges[:-1]),
             ]
@@ -146,7 +146,7 @@ class Reassembly(wiring.Component):
 
     Ports: `i`, fragments; `o`, whole datagrams, `meta` being the last arrived fragment's, but for `length`;
     `ip_payloadsmem`, the memory, of `depth` octets: `max_pendings` slots of `max_fragments * max_payload`; `expiration`, in
-    cycles.
+    cycles, as it is when a datagram's first fragment comes.
 
     A fragment waits for `max_fragments` + 2 cycles before its first octet is taken, and for one at its end; it is written
     an octet a cycle. When the last that was missing has come, its end waits until the whole datagram has been read and has

@@ -68,8 +68,9 @@ class UdpRx(wiring.Component):
         length = Signal(16)
         m.d.comb += length.eq(Cat(numbers.length[:3], numbers.length[3:] - 1))  # less udp.SIZE, 8
         count = Signal(16, init=udp.SIZE)  # octets, of header and data
-        full = Signal()
-        m.d.comb += full.eq(count == numbers.length)
+        following = Signal(16)
+        m.d.comb += following.eq(count + 1)
+        full = Signal()  # all octets within the length have come
 
         in_header = Signal()
         any_checksum = Signal()
@@ -99,6 +100,7 @@ class UdpRx(wiring.Component):
                         m.d.sync += any_checksum.eq(1)
                     with m.If(at == udp.SIZE - 1):
                         m.next = "DATA"
+                        m.d.sync += full.eq(numbers.length == udp.SIZE)
                         with m.If(numbers.length[3:] == 0):
                             m.next = "DROP"
             with m.State("DATA"):
@@ -115,7 +117,7 @@ class UdpRx(wiring.Component):
                 with m.Else():
                     m.d.comb += [o.valid.eq(i.valid & ~full), i.ready.eq(o.ready | full)]
                 with m.If(taken):
-                    m.d.sync += count.eq(count + 1)
+                    m.d.sync += [count.eq(following), full.eq(following == numbers.length)]
                 with m.If(ended):
                     m.next = "HEADER"
             with m.State("DROP"):

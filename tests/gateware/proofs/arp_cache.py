@@ -16,7 +16,7 @@ VISIT = 4
 TICK = 2 ** (WIDTH + VISIT)
 LATE = TICK + 8
 """Cycles by which an interval may be missed: a tick, and what the cache may be busy with when a visit is due."""
-MOST = 2 * (2**WIDTH + 5) + 5
+MOST = 2 * (2**WIDTH + 7) + 7
 """Cycles of an answer, by the contract."""
 
 
@@ -113,11 +113,11 @@ class EntriesSpec(_Cache):
     `learned`: what is found is what was learned last. `create`: and somebody had asked for it, or it came with `create`.
     `tried`: what has failed was asked for as often and as long ago as it should. `kept`: what is learned while it is being
     asked for, or first of all, is found until its time is over or another address is asked for. `ready`: no request while
-    none can be sent. `wanted`: only for what somebody asked of the cache. `prompt`: its first question has one 2 cycles
+    none can be sent. `wanted`: only for what somebody asked of the cache. `prompt`: its first question has one 3 cycles
     later. `apart`: requests keep their distance. `resolving`: nothing else is asked for meanwhile.
     """
 
-    quick, deep = 22, 30
+    quick, deep = 29, 36
     # The first visit falls behind the first question: at reset nothing is there to be visited.
     scale = (*_Cache.scale, (CLOCK, f"{CLOCK}, init=5"))
     bugs = (
@@ -183,7 +183,7 @@ class EntriesSpec(_Cache):
             m.d.sync += [told.eq(1), mac.eq(dut.mac), created.eq(created | dut.create), age.eq(0)]
             m.d.sync += [there.eq(lasts | waits | (first & dut.create)), pending.eq(0), requests.eq(0)]
 
-        begun = Signal(2)
+        begun = Signal(3)
         m.d.sync += begun.eq(Cat(nothing & first, begun))
         failed = answered & lookup.failed
         waited = Signal(5)
@@ -198,7 +198,7 @@ class EntriesSpec(_Cache):
             Assert(~(answered & lasts) | lookup.found, "kept"),
             Assert(~dut.ask | (dut.ask_ready & dut.enable), "ready"),
             Assert(~asked | wanted, "wanted"),
-            Assert(~begun[1] | ~dut.ask_ready | dut.ask, "prompt"),
+            Assert(~begun[2] | ~dut.ask_ready | dut.ask, "prompt"),
             Assert(~(asked & waits), "apart"),
             Assert(~(dut.ask & ~asked & waits), "resolving"),
             Cover(found, "found"),
