@@ -14,7 +14,21 @@ from typing import Any
 
 import pytest
 
-from roslet.cli.bench import paper, plots, porting, report, rtt, stacks, tables, validity, values
+import peers
+from roslet.bundle import flash
+from roslet.cli.bench import (
+    board,
+    compiled,
+    paper,
+    plots,
+    porting,
+    report,
+    rtt,
+    stacks,
+    tables,
+    validity,
+    values,
+)
 from roslet.master.server import MasterServer
 
 Run = Callable[..., Any]
@@ -173,7 +187,7 @@ def test_one_size_from_end_to_end(run: Run, tmp_path: pathlib.Path) -> None:
     found = json.loads(outcome.out)
     assert found["problems"] == [] and found["rtt"]["samples"] is None
     assert list(found["rtt"]["figures"]) == [
-        "floor TCP", "floor UDP", "roslet, ROS 1", "roslet, ROS 2", "a board",
+        "floor TCP", "floor UDP", "roslet, ROS 1", "roslet, ROS 2", *board.NAMES.values(), "a board",
     ]  # fmt: skip
     for cases in found["rtt"]["figures"].values():
         assert {case: (one["count"], one["lost"]) for case, one in cases.items()} == {
@@ -183,6 +197,33 @@ def test_one_size_from_end_to_end(run: Run, tmp_path: pathlib.Path) -> None:
         assert all(one["min"] > 0 for one in cases.values())
     written = json.loads((tmp_path / "results.json").read_text("utf-8"))
     assert len(written["rtt"]["samples"]["a board"]["64"][0]) == 5
+
+
+@pytest.mark.timeout(400)  # the program for roscpp may have to be compiled
+def test_the_peers_that_are_installed_answer(run: Run, tmp_path: pathlib.Path) -> None:
+    for name in ("roscpp", "rospy", "kilted", "cyclone"):
+        peers.require(name)
+    outcome = run(
+        "bench", "--quick", "--only", "rtt,size", "--sizes", "1024", "--count", 3, "--output", tmp_path, "--json",
+    )  # fmt: skip
+    assert outcome.code == 0, outcome.err
+    found = json.loads(outcome.out)
+    assert found["problems"] == [] and "not installed" not in found["about"]
+    assert set(found["rtt"]["figures"]) == {
+        *("floor TCP", "floor UDP", "roslet, ROS 1", "roslet, ROS 2", *board.NAMES.values()),
+        *("roscpp", "rospy", "rclpy", "rclpy, UDP only", "cyclonedds"),
+    }
+    for name, cases in found["rtt"]["figures"].items():
+        assert cases["1024"]["count"] == 3 and cases["1024"]["lost"] == 0, name
+    assert {*board.NAMES.values(), "libroscpp-dev", "cyclonedds"} <= set(found["size"]["installed"])
+
+
+def test_what_is_missing_for_micropython_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(flash, "find_compiler", lambda: None)
+    with pytest.raises(compiled.Absent, match="mpy-cross"), board.boards(""):
+        pass
+    with board.boards("roscpp") as (none, sizes):
+        assert none == [] and sizes == {"installed": {}}
 
 
 @pytest.mark.parametrize(

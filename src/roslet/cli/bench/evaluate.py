@@ -13,7 +13,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 import roslet
-from roslet.cli.bench import PARTS, porting, report, rtt, size, stacks, validity
+from roslet.cli.bench import PARTS, board, compiled, porting, report, rtt, size, stacks, validity
 from roslet.cli.bench.paper import SIZES
 from roslet.cli.bench.tables import tables
 from roslet.cli.options import USAGE, CommandError
@@ -21,6 +21,7 @@ from roslet.cli.output import Live, emit_json, note, table
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Iterator
 
 QUICK_SIZES, QUICK_COUNT = (1, 1024, 32768), 50
 WIDTH = 40
@@ -60,9 +61,10 @@ def evaluate(arguments: argparse.Namespace) -> int:
         _json(path)
     found, absent = stacks.peers(arguments.stacks, note)
     ours = [stack for stack in stacks.ours() if stacks.wanted(stack.name, arguments.stacks)]
-    everybody = [*stacks.floors(), *ours, *found, *own]
-    result: dict[str, Any] = {"about": _about(absent), "problems": []}
-    with _network() as network:
+    result: dict[str, Any] = {"problems": []}
+    with _network() as network, _boards(arguments.stacks, absent) as (boards, sizes_of_boards):
+        everybody = [*stacks.floors(), *ours, *boards, *found, *own]
+        result["about"] = _about(absent)
         if "rtt" in parts:
             trips = rtt.measure(everybody, network, rtt.cases(sizes), rounds, count, Progress("rtt"))
             result["rtt"] = _trips(trips, everybody, sizes, rounds, count)
@@ -80,7 +82,7 @@ def evaluate(arguments: argparse.Namespace) -> int:
             result["problems"] += result["porting"]["problems"]
     if "size" in parts:
         memory = result["rtt"]["memory"] if "rtt" in result else {}
-        result["size"] = size.measure(memory, _json(arguments.sizes_of))
+        result["size"] = size.measure(memory, sizes_of_boards, _json(arguments.sizes_of))
     if arguments.gates:
         result["gates"] = _json(arguments.gates)["echo"]
     folder = pathlib.Path(arguments.output)
@@ -139,6 +141,18 @@ def _network() -> Any:
             yield stacks.Network(master.uri, 1 + os.getpid() % 100)
 
     return opened()
+
+
+@contextlib.contextmanager
+def _boards(only: str, absent: dict[str, str]) -> Iterator[tuple[list[stacks.Stack], dict[str, Any]]]:
+    """Of board.py; where there are none, `absent` is told why."""
+    with contextlib.ExitStack() as opened:
+        try:
+            found = opened.enter_context(board.boards(only))
+        except compiled.Absent as error:
+            absent["MicroPython"] = str(error)
+            found = [], {}
+        yield found
 
 
 def _about(absent: dict[str, str]) -> dict[str, str]:

@@ -110,8 +110,8 @@ def sections(program: pathlib.Path) -> tuple[int, int, int] | None:
     return (int(words[0]), int(words[1]), int(words[2])) if words else None
 
 
-def measure(memory: dict[str, int], given: dict[str, Any]) -> dict[str, Any]:
-    """The tables. `given` are sections and installed bytes that other commands measured: {"sections": {NAME: [TEXT, DATA,
+def measure(memory: dict[str, int], *given: dict[str, Any]) -> dict[str, Any]:
+    """The tables. Each of `given` are sections and installed bytes that others measured: {"sections": {NAME: [TEXT, DATA,
     BSS]}, "installed": {NAME: {"bytes": N, "what": TEXT}}}."""
     installed: dict[str, dict[str, Any]] = {}
     for name, count in rooms(pathlib.Path(roslet.__file__).resolve().parent).items():
@@ -143,8 +143,7 @@ def measure(memory: dict[str, int], given: dict[str, Any]) -> dict[str, Any]:
             compiled_sections["roscpp"] = list(roscpp)
     except compiled.Absent:
         pass
-    return {
-        "installed": {**installed, **given.get("installed", {})},
-        "sections": {**compiled_sections, **given.get("sections", {})},
-        "memory": memory,
-    }
+    for one in given:
+        installed.update(one.get("installed", {}))
+        compiled_sections.update(one.get("sections", {}))
+    return {"installed": installed, "sections": compiled_sections, "memory": memory}

@@ -155,10 +155,13 @@ def of_user(text: str) -> Stack:
     dialect, _, command = rest.partition(":")
     if not name or dialect not in ("ros1", "ros2") or not command.strip():
         raise ValueError(f"{text!r} is not NAME=ros1:COMMAND or NAME=ros2:COMMAND")
+    return pinged(name, dialect, tuple(shlex.split(command)))
+
+
+def pinged(name: str, dialect: str, words: tuple[str, ...]) -> Stack:
+    """A stack whose echo node is what these words start, and which roslet pings."""
     host = next(stack for stack in ours() if stack.dialect == dialect)
-    return Stack(
-        name, dialect, host.ping, tuple(shlex.split(command)), host.variables, host.floor, foreign=True
-    )
+    return Stack(name, dialect, host.ping, words, host.variables, host.floor, foreign=True)
 
 
 def wanted(name: str, words: str) -> bool:
