@@ -4,6 +4,8 @@ services, parameters, the log; and a peer that is killed and back."""
 from __future__ import annotations
 
 import os
+import pathlib
+import sys
 import time
 from collections.abc import Iterator
 
@@ -11,9 +13,13 @@ import pytest
 
 import peers
 from interop import boards
+from interop.namespace import Namespace
 from interop.ros1 import Master, Peer, Program, wait_until
 
 HEAP = "512k"
+# In a network namespace of a test's own.
+MASTER_PORT = "11311"
+MASTER_URI = f"http://127.0.0.1:{MASTER_PORT}"
 TURNS = 20 if os.environ.get("ROSLET_LONG") else 3
 
 
@@ -148,3 +154,40 @@ def test_a_peer_is_killed_and_back(board: Program, master: Master) -> None:
         mortal.process.wait()
         time.sleep(0.1)
     assert board.process.poll() is None
+
+
+ASKER = """
+import roslet
+
+with roslet.Node("asker", network="ros1://") as node:
+    text = node.publisher("text", "std_msgs/String")
+    node.subscribe("text_back", "std_msgs/String", lambda message: print(message.data, flush=True))
+    text.wait_for_subscribers(1, 20.0)
+    print("ready", flush=True)
+    numbers = iter(range(1000))
+    node.timer(0.1, lambda: text.publish(data=str(next(numbers))))
+    node.spin(90.0)
+"""
+
+
+def test_the_network_is_gone_and_back(tmp_path: pathlib.Path) -> None:
+    made = boards.bundle("ros1", tmp_path)
+    ours = {"PYTHONPATH": str(peers.ROOT / "src"), "ROS_MASTER_URI": MASTER_URI, "ROS_IP": "127.0.0.1"}
+    with Namespace(tmp_path, route=False) as namespace:
+        master = namespace.start(
+            sys.executable, "-m", "roslet", "master", "--port", MASTER_PORT, name="master", **ours
+        )
+        master.wait_until(bool, 30.0, "where it is")
+        board = namespace.start(*boards.command(made, HEAP), name="board", **ours)
+        board.wait_for("ready")
+        asker = namespace.start(sys.executable, "-c", ASKER, name="asker", **ours)
+        asker.wait_for("ready")
+        for _ in range(TURNS):
+            namespace.run("ip link set lo down")
+            time.sleep(1.0)
+            before = len(asker.lines())
+            namespace.run("ip link set lo up")
+            asker.wait_until(lambda lines, before=before: len(lines) > before + 5, 30.0, "answers come again")
+        numbers = [int(line) for line in asker.lines()[1:]]
+        assert numbers == sorted(set(numbers))
+        assert board.process.poll() is None and master.process.poll() is None
