@@ -238,7 +238,8 @@ class Reactor:
         self._waker.interrupt()
 
     def _wake(self, user: bool) -> None:
-        """Likewise; with `user`, of a loop that serves users: a caller that is another wakes nobody but tells `fileno`."""
+        """The same; with `user` for what only a loop that serves users will do: who watches `fileno` is told then, too, by a
+        caller that is a loop itself but serves none."""
         if self._owner != threading.get_ident() or (user and not self._serves_users):
             (self._user_waker if user else self._waker).wake()
 
