@@ -100,7 +100,7 @@ def main() -> int:
         failing = quiet.failing() + other.failing()
         if codes <= {PASSED, FAILED} and 0 < len(failing) <= MOST_AGAIN:
             print("== once more, alone: what failed", flush=True)
-            again = Part(folder / "again", *failing)
+            again = Part(folder / "again", f"--timeout={PATIENCE}", *failing)
             codes = {subprocess.call(again.command, cwd=ROOT, stdin=subprocess.DEVNULL)}
             if total["skipped"] and os.environ.get("CI"):
                 codes.add(FAILED)

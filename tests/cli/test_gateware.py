@@ -23,6 +23,7 @@ FIGURES = {
     "block_rams": 2,
     "clocks": {"clk": {"fmax": 90.0, "goal": 100.0}, "phy_rx_clk": {"fmax": 140.5, "goal": 25.0}},
     "met": False,
+    "seed": 1,
 }
 
 
@@ -72,6 +73,7 @@ def test_a_clock_that_is_too_slow_is_shown_and_fails(
         "LUT4        7 (logic 4, carry 3)",
         "flip-flops  9",
         "block RAM   2",
+        "seed        1",
         "clock         MHz   goal",
         "clk          90.0  100.0  too slow",
         "phy_rx_clk  140.5   25.0",

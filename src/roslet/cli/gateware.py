@@ -210,6 +210,8 @@ def _show(arguments: argparse.Namespace, result: dict[str, Any]) -> None:
     set_up = result.get("settings_flip_flops")
     print(f"flip-flops  {result['flip_flops']}" + (f" ({set_up} of them for settings)" if set_up else ""))
     print(f"block RAM   {result['block_rams']}")
+    if "seed" in result:
+        print(f"seed        {result['seed']}")
     rows = [
         (
             name,

@@ -62,7 +62,7 @@ def evaluate(arguments: argparse.Namespace) -> int:
     found, absent = stacks.peers(arguments.stacks, note)
     ours = [stack for stack in stacks.ours() if stacks.wanted(stack.name, arguments.stacks)]
     result: dict[str, Any] = {"problems": []}
-    with _network() as network, _boards(arguments.stacks, absent) as (boards, sizes_of_boards):
+    with _network() as network, _boards(arguments.stacks, parts, absent) as (boards, sizes_of_boards):
         everybody = [*stacks.floors(), *ours, *boards, *found, *own]
         result["about"] = _about(absent)
         if "rtt" in parts:
@@ -144,14 +144,17 @@ def _network() -> Any:
 
 
 @contextlib.contextmanager
-def _boards(only: str, absent: dict[str, str]) -> Iterator[tuple[list[stacks.Stack], dict[str, Any]]]:
-    """Of board.py; where there are none, `absent` is told why."""
+def _boards(
+    only: str, parts: list[str], absent: dict[str, str]
+) -> Iterator[tuple[list[stacks.Stack], dict[str, Any]]]:
+    """Of board.py, for the parts that have a use for them; where they cannot be made, `absent` is told why."""
+    found: tuple[list[stacks.Stack], dict[str, Any]] = [], {}
     with contextlib.ExitStack() as opened:
-        try:
-            found = opened.enter_context(board.boards(only))
-        except compiled.Absent as error:
-            absent["MicroPython"] = str(error)
-            found = [], {}
+        if "rtt" in parts or "size" in parts:
+            try:
+                found = opened.enter_context(board.boards(only))
+            except compiled.Absent as error:
+                absent["MicroPython"] = str(error)
         yield found
 
 
