@@ -128,6 +128,8 @@ class Discovery(wiring.Component):
                     slot.eq(meta.slot),
                     self._entity.eq(read.entity),
                 ]
+                with m.If(parameters.done):  # then nobody else asks, whatever follows
+                    m.d.comb += self._address.eq(peers.scratch(tables.SCRATCH_ENTITY))
                 with m.If(ticked & self.idle):
                     m.d.sync += [ticked.eq(0), sweeping.eq(1), slot.eq(0)]
                     m.next = "SWEEP"
@@ -135,7 +137,6 @@ class Discovery(wiring.Component):
                     m.next = "PARTICIPANT"
                 with m.Elif(parameters.done):
                     m.next = "KEY"
-                    m.d.comb += self._address.eq(peers.scratch(tables.SCRATCH_ENTITY))
             with m.State("PROCEED"):
                 m.d.comb += parameters.proceed.eq(1)
                 m.next = "IDLE"

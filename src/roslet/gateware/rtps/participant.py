@@ -9,7 +9,7 @@ from amaranth.hdl import Cat, Module, Signal, Value
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
-from roslet.gateware.fifo import FrameRegister
+from roslet.gateware.fifo import MessageRegister
 from roslet.gateware.meta import ADDRESSES, UDP_RX, UDP_TX, LookupSignature
 from roslet.gateware.rtps.composer import Composer
 from roslet.gateware.rtps.discovery import Discovery
@@ -142,10 +142,10 @@ class Participant(wiring.Component):
 
         connect(m, flipped(self.udp_rx), queue.i)
         connect(m, queue.o, walker.i)
-        m.submodules.bodies = bodies = FrameRegister(SUBMESSAGE, MessageSignature)
+        m.submodules.bodies = bodies = MessageRegister(SUBMESSAGE)
         connect(m, walker.o, bodies.i)
         connect(m, bodies.o, submessages.i)
-        m.submodules.lists = lists = FrameRegister(DISCOVERY, MessageSignature)
+        m.submodules.lists = lists = MessageRegister(DISCOVERY)
         connect(m, submessages.discovery, lists.i)
         connect(m, lists.o, discovery.i)
         connect(m, outbox.o, flipped(self.udp_tx))
