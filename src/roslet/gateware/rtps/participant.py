@@ -170,6 +170,7 @@ class Participant(wiring.Component):
             discovery.heard.eq(walker.heard),
             discovery.heard_slot.eq(walker.heard_slot),
             discovery.addresses.eq(self.addresses),
+            discovery.group_port.eq(self.group_port),
             discovery.domain.eq(0 if self._domain is None else self._domain),
             discovery.tick.eq(self.tick),
             submessages.room.eq(self.room),

@@ -11,15 +11,14 @@ from amaranth.lib.wiring import In, Out
 from roslet.gateware.octets import pick
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.composer import SUBJECT
+from roslet.gateware.rtps.parameters import GROUP, USER_GROUP_PORT
 from roslet.gateware.rtps.ports import READ_LATENCY, ReadSignature, WriteSignature
 from roslet.gateware.rtps.rom import REGISTER_BITS, Register, Rom
 from roslet.gateware.rtps.scan import lowest
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 from roslet.gateware.rtps.turns import JOB
 from roslet.gateware.words import MessageSignature
-from roslet.wire.rtps import locator
 
-GROUP = int.from_bytes(locator.SPDP_MULTICAST_ADDRESS, "little")
 CDR_LE = 0x0100
 """The encapsulation header of our messages, as a word has it."""
 AGE = signed(16)
@@ -31,15 +30,18 @@ class Sender(wiring.Component):
     """Serves who is next.
 
     Ports: `publish0` .. for each writer of the user, the first `users` of the tables' writers: its messages. `job`, `valid`,
-    `taken`, of `Turns`; `matched`, the user proxies that there are; `group_port`, where all are to be announced to;
-    `peers` and `own`, read ports, and `write`; `template`, `start`, `done`, `which`, `register`, `subject`, of the composer;
+    `taken`, of `Turns`; `matched`, the user proxies that there are; `group_port`, where all are to be announced to,
+    and messages for the group at the next; `peers` and `own`, read ports, and `write`; `template`, `start`, `done`, `which`,
+    `register`, `subject`, of the composer;
     `room`, `busy`, `finish`, `ip`, `port`, of the outbox; `writers`, `readers`, a bit for each of ours that is enabled;
     `again`, high for a cycle when every proxy must be served once.
 
     - When one of ours is enabled or disabled, all are told of again, under new numbers: of those that are not enabled, that
       they are gone.
     - A message is kept, replacing the oldest that its writer keeps, and sent at once to each reader that matches, with a
-      HEARTBEAT to those that are reliable. Between two messages somebody else is served.
+      HEARTBEAT to those that are reliable. Those that are in the group too, and need nothing older than the others, get it
+      there together, if there were several of them at the writer's message before. Between two messages somebody else is
+      served.
     - A peer's writer gets an ACKNACK when it is due: what is missing up to its last, `window` of it at most, as peers put
       what they repeat into one datagram.
     - A peer's reader gets, when it has asked, what it has asked for, of what is kept; a GAP for what is not; and a
@@ -95,6 +97,7 @@ class Sender(wiring.Component):
         self._padding = Signal(2)
         self._publishing, self._yield, self._asked = Signal(), Signal(), Signal()
         self._is_writer, self._reliable = Signal(), Signal()  # the peer's endpoint
+        self._to_group = Signal()  # a message goes to the group now
         self._local = Signal(8)
         self._count = Signal(32)
         m.d.comb += self.subject.entity.eq(self._local + 1)
@@ -450,7 +453,11 @@ class Sender(wiring.Component):
             self._compose(m, self._by_kind("heartbeat"), "IDLE")
             if self._users:
                 with m.If(self._publishing):
-                    self._compose(m, self._rom.start["message_heartbeat"], "NEXT READER")
+                    start = self._rom.start
+                    template = Mux(
+                        self._to_group, start["group_message_heartbeat"], start["message_heartbeat"]
+                    )
+                    self._compose(m, template, "NEXT READER")
 
     # -- a message of the user's
 
@@ -472,8 +479,14 @@ class Sender(wiring.Component):
         reads = Signal(range(latency + 1))  # under way
         ours = Signal()
         start = Signal(AGE)
+        # Of this message's readers one, several are in the group; of each writer's last one there were several.
+        in_group, one_there, several_there = Signal(), Signal(), Signal()
+        grouped = Signal()  # it has gone to the group
+        several = Signal(self._users)
+        its = self._local[: (self._users - 1).bit_length()]
         with m.State("PUBLISH"):
             m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST))
+            m.d.sync += [grouped.eq(0), one_there.eq(0), several_there.eq(0)]
             m.d.sync += [words.eq(0), long.eq(0), self._age.eq(0), endpoint.eq(0)]
             m.next = "NUMBERED"
         with m.State("NUMBERED"):
@@ -545,8 +558,7 @@ class Sender(wiring.Component):
             with m.If(reads != latency):
                 m.d.sync += reads.eq(reads + 1)
             with m.Elif(~ours & (shown == peers.endpoints - 1)):
-                m.d.sync += self._yield.eq(1)
-                m.next = "IDLE"
+                m.next = "PUBLISHED"
         with m.State("THE READER"):
             m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.IP))
             m.next = "READER IP"
@@ -558,21 +570,38 @@ class Sender(wiring.Component):
             m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.START))
             m.next = "READER'S PORT"
         with m.State("READER'S PORT"):
-            m.d.sync += self.port.eq(self.peers.data)
+            m.d.sync += [self.port.eq(self.peers.data), in_group.eq(self.peers.data[tables.PORT_GROUP])]
             m.next = "READER START"
         with m.State("READER START"):
             m.d.sync += start.eq(self._age_of(self.peers.data))
             m.next = "READER OLDEST"
         with m.State("READER OLDEST"):
-            with m.If(start < self._oldest):
-                m.d.sync += self._oldest.eq(start)
             with m.If(self._reliable):
                 m.next = "HEARTBEAT"
             with m.Else():
                 self._compose(m, self._rom.start["message"], "NEXT READER")
+            with m.If(start < self._oldest):
+                m.d.sync += self._oldest.eq(start)
+            with m.Elif(in_group):  # what is kept is the same for all of these
+                m.d.sync += [one_there.eq(1), several_there.eq(one_there)]
+                with m.If(grouped):
+                    m.next = "NEXT READER"
+                with m.Elif(several.bit_select(its, 1)):
+                    m.d.sync += [
+                        self._to_group.eq(1),
+                        grouped.eq(1),
+                        self.ip.eq(GROUP),
+                        self.port.eq(self.group_port + USER_GROUP_PORT),
+                    ]
+                    with m.If(self._choose([C(one.reliable, 1) for one in own.writers])):
+                        m.next = "HEARTBEAT"
+                    with m.Else():
+                        self._compose(m, self._rom.start["group_message"], "NEXT READER")
         with m.State("NEXT READER"):
-            m.d.sync += [step.eq(endpoint + 1), reads.eq(0)]
+            m.d.sync += [step.eq(endpoint + 1), reads.eq(0), self._to_group.eq(0)]
             m.next = "EACH READER"
             with m.If(endpoint == peers.endpoints - 1):
-                m.d.sync += self._yield.eq(1)
-                m.next = "IDLE"
+                m.next = "PUBLISHED"
+        with m.State("PUBLISHED"):
+            m.d.sync += [several.bit_select(its, 1).eq(several_there), self._yield.eq(1)]
+            m.next = "IDLE"
