@@ -104,7 +104,14 @@ class Sender(wiring.Component):
         self._increased = Signal(32)
         m.d.comb += self._increased.eq(self.own.data + 1)
         self._registers(m)
-        with m.FSM():
+        # Asked for of peers: this word of the proxy that is served, or of its participant. In IDLE it is the job's, whose
+        # turn comes next; in EACH READER that of an endpoint.
+        self._word, self._of_participant = Signal(4), Signal()
+        self._stepping, self._step = Signal(), Signal(range(self._peers.endpoints))
+        idle, composing = Signal(), Signal()
+        self._ask(m, idle, composing)
+        with m.FSM() as fsm:
+            m.d.comb += [idle.eq(fsm.ongoing("IDLE")), composing.eq(fsm.ongoing("COMPOSING"))]
             self._idle(m)
             self._announcements(m)
             self._who(m)
@@ -124,6 +131,19 @@ class Sender(wiring.Component):
         return m
 
     # -- what states share
+
+    def _ask(self, m: Module, idle: Value, composing: Value) -> None:
+        """Of peers what is asked for; while the composer asks, nothing."""
+        peers, subject, job = self._peers, self.subject, self.job
+        slot = Mux(idle, job.index, subject.slot)
+        endpoint = Mux(idle, job.index, Mux(self._stepping, self._step, subject.endpoint))
+        with m.If(~composing):
+            with m.If(self._of_participant):
+                m.d.comb += self.peers.addr.eq(peers.participant(slot, self._word))
+            with m.Elif(subject.builtin & ~idle):
+                m.d.comb += self.peers.addr.eq(peers.builtin(slot, subject.kind, self._word))
+            with m.Else():
+                m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, self._word))
 
     def _registers(self, m: Module) -> None:
         """What templates refer to."""
@@ -176,14 +196,6 @@ class Sender(wiring.Component):
         of_builtin = Mux(subject.kind[0], start[f"subscription_{name}"], start[f"publication_{name}"])
         return Mux(subject.builtin, of_builtin, start[name])
 
-    def _proxy(self, word: int) -> Value:
-        subject = self.subject
-        return Mux(
-            subject.builtin,
-            self._peers.builtin(subject.slot, subject.kind, word),
-            self._peers.endpoint(subject.endpoint, word),
-        )
-
     def _writer_word(self, word: int) -> Value:
         return self._own.writer(self._local, word)
 
@@ -221,7 +233,6 @@ class Sender(wiring.Component):
                 with m.If(job.announce):
                     m.next = "ANNOUNCE"
                 with m.If(job.greet):
-                    m.d.comb += self.peers.addr.eq(self._peers.participant(job.index, tables.META_IP))
                     m.next = "GREET"
             if self._users:
                 with m.Elif(pending.any()):
@@ -232,8 +243,10 @@ class Sender(wiring.Component):
                     else:
                         m.d.sync += self._local.eq(0)
                     m.next = "PUBLISH"
-            with m.If(~job.greet):
-                m.d.comb += self.peers.addr.eq(self._peers.endpoint(job.index, tables.INFO))
+            m.d.comb += [
+                self._of_participant.eq(job.greet),
+                self._word.eq(Mux(job.greet, tables.META_IP, tables.INFO)),
+            ]
 
         # All endpoints are told of again, by new numbers: of writers, then of readers.
         with m.State("CHANGED"):
@@ -260,7 +273,7 @@ class Sender(wiring.Component):
             m.d.sync += [self.ip.eq(GROUP), self.port.eq(self.group_port)]
             m.next = "ANNOUNCEMENT"
         with m.State("GREET"):
-            m.d.comb += self.peers.addr.eq(self._peers.participant(self.subject.slot, tables.META_PORT))
+            m.d.comb += [self._of_participant.eq(1), self._word.eq(tables.META_PORT)]
             m.next = "GREET IP"
         with m.State("GREET IP"):
             m.d.sync += self.ip.eq(self.peers.data)
@@ -275,18 +288,15 @@ class Sender(wiring.Component):
     # -- a proxy
 
     def _who(self, m: Module) -> None:
-        peers, subject = self._peers, self.subject
+        subject = self.subject
         with m.State("LOOK"):
             m.next = "WHO"
         with m.State("WHO"):
             info = self.peers.data
-            m.d.comb += self.peers.addr.eq(
-                Mux(
-                    subject.builtin,
-                    peers.participant(subject.slot, tables.META_IP),
-                    peers.endpoint(subject.endpoint, tables.IP),
-                )
-            )
+            m.d.comb += [
+                self._of_participant.eq(subject.builtin),
+                self._word.eq(Mux(subject.builtin, tables.META_IP, tables.IP)),
+            ]
             m.d.sync += [self._is_writer.eq(subject.kind[1]), self._reliable.eq(1)]
             with m.If(~subject.builtin):
                 m.d.sync += [
@@ -297,13 +307,10 @@ class Sender(wiring.Component):
                 ]
             m.next = "WHERE"
         with m.State("WHERE"):
-            m.d.comb += self.peers.addr.eq(
-                Mux(
-                    subject.builtin,
-                    peers.participant(subject.slot, tables.META_PORT),
-                    peers.endpoint(subject.endpoint, tables.PORT),
-                )
-            )
+            m.d.comb += [
+                self._of_participant.eq(subject.builtin),
+                self._word.eq(Mux(subject.builtin, tables.META_PORT, tables.PORT)),
+            ]
             m.next = "IDLE"
             with m.If(self._is_writer & self._asked):
                 m.next = "WRITER"
@@ -315,11 +322,11 @@ class Sender(wiring.Component):
         own = self._own
         with m.State("WRITER"):
             m.d.sync += self.ip.eq(self.peers.data)
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.LAST))
+            m.d.comb += self._word.eq(tables.LAST)
             m.next = "WRITER PORT"
         with m.State("WRITER PORT"):
             m.d.sync += self.port.eq(self.peers.data)
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.NEXT_LO))
+            m.d.comb += self._word.eq(tables.NEXT_LO)
             m.next = "WANTED"
         with m.State("WANTED"):
             m.d.sync += self._last.eq(self.peers.data)
@@ -351,7 +358,7 @@ class Sender(wiring.Component):
         with m.State("READER PORT"):
             m.d.sync += self.port.eq(self.peers.data)
             m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST_HI))
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.START))
+            m.d.comb += self._word.eq(tables.START)
             m.next = "LAST"
         with m.State("LAST"):
             most = Mux(subject.kind[0], C(kinds[1], AGE), C(kinds[0], AGE))
@@ -360,14 +367,14 @@ class Sender(wiring.Component):
                 self._last.eq(self.own.data + Mux(subject.builtin, most, 0)),
             ]
             m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_COUNT))
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.ACKED))
+            m.d.comb += self._word.eq(tables.ACKED)
             m.next = "START"
         with m.State("START"):
             age = self._age_of(self.peers.data)
             m.d.sync += [start.eq(Mux(subject.builtin, MAX_AGE, age)), self._last_high.eq(self.own.data)]
             with m.If(subject.builtin):
                 m.d.sync += self._last_high.eq(0)
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.ASK_FROM))
+            m.d.comb += self._word.eq(tables.ASK_FROM)
             m.next = "ACKED"
         with m.State("ACKED"):
             m.d.sync += [
@@ -376,7 +383,7 @@ class Sender(wiring.Component):
             ]
             with m.If(~subject.builtin):
                 m.d.sync += self._oldest.eq((self.own.data - 1)[:16].as_signed())
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.ASK_TO))
+            m.d.comb += self._word.eq(tables.ASK_TO)
             m.next = "ASK FROM"
         with m.State("ASK FROM"):
             m.d.sync += self._age.eq(self._age_of(self.peers.data))
@@ -538,7 +545,7 @@ class Sender(wiring.Component):
         with m.State("EACH READER"):  # an endpoint a cycle
             info = self.peers.data
             is_reader = self.matched.bit_select(given_of, 1) & ~info[tables.INFO_WRITER]
-            m.d.comb += self.peers.addr.eq(peers.endpoint(step, tables.INFO))
+            m.d.comb += [self._stepping.eq(1), self._step.eq(step), self._word.eq(tables.INFO)]
             m.d.sync += [
                 step.eq(step + 1),
                 addressed.eq(step),
@@ -560,14 +567,14 @@ class Sender(wiring.Component):
             with m.Elif(~ours & (shown == peers.endpoints - 1)):
                 m.next = "PUBLISHED"
         with m.State("THE READER"):
-            m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.IP))
+            m.d.comb += self._word.eq(tables.IP)
             m.next = "READER IP"
         with m.State("READER IP"):
-            m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.PORT))
+            m.d.comb += self._word.eq(tables.PORT)
             m.next = "READER WHERE"
         with m.State("READER WHERE"):
             m.d.sync += self.ip.eq(self.peers.data)
-            m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.START))
+            m.d.comb += self._word.eq(tables.START)
             m.next = "READER'S PORT"
         with m.State("READER'S PORT"):
             m.d.sync += [self.port.eq(self.peers.data), in_group.eq(self.peers.data[tables.PORT_GROUP])]
