@@ -12,7 +12,14 @@ from amaranth.lib.wiring import In, Out
 
 from gateware.frames import STALLS, Bad, Bench
 from gateware.phy import some
-from roslet.gateware.fifo import AsyncFrameFifo, FrameFifo, FrameRegister, LossyFrameFifo
+from gateware.words import WordBench
+from roslet.gateware.fifo import (
+    AsyncFrameFifo,
+    FrameFifo,
+    FrameRegister,
+    LossyFrameFifo,
+    MessageRegister,
+)
 from roslet.gateware.stream import FrameSignature
 
 CLOCKS = pytest.mark.parametrize("other", [40e-9, 10.001e-9, 3e-9])
@@ -64,6 +71,24 @@ def test_registers_pass_an_octet_every_cycle_and_take_two_more_for_an_end_with_m
     bench.send("i", [bytes(99)] * 5, [0] * 5)
     got = bench.receive("o")
     bench.run(lambda: len(got) == 5, cycles=5 * (99 + 1 + 2) + 2)
+
+
+@pytest.mark.parametrize("stalls", STALLS)
+def test_a_place_for_messages_keeps_them_and_what_is_known_of_them(stalls: int) -> None:
+    messages = [type(frame)(4 * frame) for frame in some_frames(9, 30, 10)]
+    bench = WordBench(MessageRegister(unsigned(8)), stalls)
+    bench.send_words("i", messages, list(range(len(messages))))
+    got = bench.receive_words("o")
+    bench.run(lambda: len(got) == len(messages))
+    assert kinds([message for message, _ in got]) == kinds(messages)
+    assert [meta for _, meta in got] == list(range(len(messages)))
+
+
+def test_a_place_for_messages_passes_a_word_in_two_cycles() -> None:
+    bench = WordBench(MessageRegister(unsigned(8)), stalls=0)
+    bench.send_words("i", [bytes(400)] * 5, [0] * 5)
+    got = bench.receive_words("o")
+    bench.run(lambda: len(got) == 5, cycles=5 * (2 * 100 + 1 + 2) + 2)
 
 
 @CLOCKS

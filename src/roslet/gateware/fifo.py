@@ -40,18 +40,13 @@ def _output(m: Module, queue: SyncFIFOBuffered | CrossingQueue, o: stream.Interf
 
 class FrameRegister(wiring.Component):
     """Two places in registers between `i` and `o`, both with `meta`: no path leads through, neither of items nor of `ready`.
-    For frames of octets, or, with `signature` MessageSignature, messages of words.
 
     `meta` passes as it is, and is not kept: where there is one, an end is taken at `i` in the cycle after it was taken at
     `o`. Throughput one octet a cycle; latency one cycle.
     """
 
-    def __init__(
-        self,
-        meta: ShapeLike | None = None,
-        signature: type[FrameSignature | MessageSignature] = FrameSignature,
-    ) -> None:
-        super().__init__({"i": In(signature(meta)), "o": Out(signature(meta))})
+    def __init__(self, meta: ShapeLike | None = None) -> None:
+        super().__init__({"i": In(FrameSignature(meta)), "o": Out(FrameSignature(meta))})
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -81,6 +76,33 @@ class FrameRegister(wiring.Component):
             ]
         with m.Elif(comes):
             m.d.sync += [spare.eq(i.payload), spared.eq(1)]
+        return m
+
+
+class MessageRegister(wiring.Component):
+    """One place in registers between `i` and `o`, messages with `meta`: no path leads through, and of what is before it
+    `o.ready` moves two bits only.
+
+    `meta` passes as it is, and is not kept: an end is taken at `i` in the cycle after it was taken at `o`. Throughput one
+    word in two cycles; latency one cycle.
+    """
+
+    def __init__(self, meta: ShapeLike) -> None:
+        super().__init__({"i": In(MessageSignature(meta)), "o": Out(MessageSignature(meta))})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        i, o = self.i.stream, self.o.stream
+        gone = Signal()  # the end that is valid at `i` has been taken at `o`
+        m.d.comb += [
+            self.o.meta.eq(self.i.meta),
+            i.ready.eq(gone | (~o.valid & ~i.payload.end)),
+        ]
+        m.d.sync += gone.eq(o.payload.end & o.valid & o.ready)
+        with m.If(o.valid):
+            m.d.sync += o.valid.eq(~o.ready)
+        with m.Else():
+            m.d.sync += [o.payload.eq(i.payload), o.valid.eq(i.valid & ~gone)]
         return m
 
 

@@ -44,22 +44,24 @@ class FifoSpec(Spec):
         self.check(m, "o", o_domain)
         i, o = self.dut.i.stream, self.dut.o.stream
         # What is the same always is so in every domain.
-        n, item = self.free(3, "n"), Signal(10)
+        n, item = self.free(3, "n"), Signal.like(i.payload)
         assume_steady(m, n, i_domain)
         sent, got, inside = Signal(4), Signal(4), Signal()
         with m.If(self.entering(m) & ~sent[3]):
             m.d[i_domain] += sent.eq(sent + 1)
             with m.If(sent == n):
-                m.d[i_domain] += [item.eq(i.payload.as_value()), inside.eq(1)]
+                m.d[i_domain] += [item.eq(i.payload), inside.eq(1)]
         with m.If(o.valid & o.ready & ~got[3]):
             m.d[o_domain] += got.eq(got + 1)
         with m.If(o.valid & (got == n)):
-            seen, bad = o.payload, item[9]
-            same = (seen.end == item[8]) & (seen.bad == bad)
-            same &= (seen.data[1:] == item[1:8]) | (seen.end & ~self.says_why)
+            seen = o.payload
+            same = (seen.end == item.end) & (seen.bad == item.bad)
+            same &= (seen.data[1:] == item.data[1:]) | (seen.end & ~self.says_why)
+            if "padding" in seen.shape().members:
+                same &= seen.padding == item.padding
             m.d.comb += [
                 Assert(inside, "nothing_else"),
-                Assert(~inside | (same & (seen.end | (seen.data[0] == item[0]))), "order"),
+                Assert(~inside | (same & (seen.end | (seen.data[0] == item.data[0]))), "order"),
             ]
         m.d.comb += Cover(got == 4, "several")
 
@@ -102,6 +104,27 @@ class RegisterSpec(FifoSpec):
             gone.eq(gone + (o.stream.valid & o.stream.ready & o.stream.payload.end)),
         ]
         m.d.comb += [Assume(i.meta == begun, "numbered"), Assert(~o.stream.valid | (o.meta == gone), "meta")]
+
+
+TAKEN = "m.d.sync += o.valid.eq(~o.ready)"
+COMES = "o.valid.eq(i.valid & ~gone)"
+PLACED = f"m.d.sync += [o.payload.eq(i.payload), {COMES}]"
+
+
+class MessageRegisterSpec(RegisterSpec):
+    """The same of a register of messages with one place."""
+
+    bugs = (
+        Bug("o.steady", TAKEN, "m.d.sync += o.valid.eq(0)"),
+        Bug("o.bad_only_at_end", PLACED, PLACED + "; m.d.sync += o.payload.bad.eq(i.payload.data[0])"),
+        Bug("order", TAKEN, TAKEN + "; m.d.sync += o.payload.eq(i.payload)"),
+        Bug("nothing_else", COMES, "o.valid.eq(1)"),
+        Bug("o.meta_steady", "gone | (~o.valid & ~i.payload.end)", "~o.valid"),
+        Bug("meta", "gone | (~o.valid & ~i.payload.end)", "~o.valid"),
+    )
+
+    def block(self) -> Any:
+        return self.gates.MessageRegister(2)
 
 
 class AsyncFifoSpec(FifoSpec):
@@ -205,4 +228,10 @@ class LossyFifoSpec(Spec):
         ]
 
 
-SPECS: tuple[type[Spec], ...] = (FifoSpec, RegisterSpec, AsyncFifoSpec, LossyFifoSpec)
+SPECS: tuple[type[Spec], ...] = (
+    FifoSpec,
+    RegisterSpec,
+    MessageRegisterSpec,
+    AsyncFifoSpec,
+    LossyFifoSpec,
+)

@@ -15,6 +15,7 @@ from roslet.gateware.rtps.tables import Local, OwnMap, PeerMap
 DROPS = ("full", "incomplete", "refused", "qos", "malformed")
 IP, MASK = "10.0.0.100", "255.255.255.0"
 DOMAIN = 5
+GROUP_PORT = 8650  # 7400 + 250 * DOMAIN. RTPS 2.3, 9.6.1.1
 WRITERS = [
     Local("rt/out", "T1"),
     Local("rt/sure", "T2", reliable=True),
@@ -87,6 +88,7 @@ class Node:
             self.ctx = ctx
             ctx.set(self.block.idle, 1)
             ctx.set(self.block.domain, DOMAIN)
+            ctx.set(self.block.group_port, GROUP_PORT)
             addresses = {"mac": 0, "ip": address(IP), "gateway": 0, "mask": address(MASK)}
             ctx.set(self.block.addresses, addresses)
             await ctx.tick()
@@ -102,16 +104,22 @@ class Node:
         return value
 
     def participant(self, slot: int) -> list[int]:
+        """Its words; of those with ports, nothing but these."""
         at = self.peers._participants + 16 * slot
-        return [self.word(at + n) for n in range(9)]
+        words = [self.word(at + n) for n in range(9)]
+        return [*words[:6], words[6] & 0xFFFF, *words[7:]]
 
     def builtin(self, slot: int, kind: int) -> list[int]:
         at = self.peers._builtins + 32 * slot + 8 * kind
         return [self.word(at + n) for n in range(8)]
 
     def endpoint(self, number: int) -> list[int]:
-        at = self.peers._endpoints + 8 * number
-        return [self.word(at + n) for n in range(8)]
+        words = [self.word(self.peers._endpoints + 8 * number + n) for n in range(8)]
+        return [*words[:3], words[3] & 0xFFFF, *words[4:]]
+
+    def in_group(self, number: int) -> bool:
+        """Whether what is for an endpoint may go to the group."""
+        return bool(self.word(self.peers._endpoints + 8 * number + 3) >> 16 & 1)
 
     def kept(self) -> list[int]:
         """All but the scratch area."""

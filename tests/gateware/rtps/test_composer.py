@@ -117,7 +117,7 @@ def test_there_is_a_template_for_all_that_a_node_says() -> None:
     assert set(NAMES) == {
         "participant", "publication0", "publication1", "subscription0", "publication_gone", "subscription_gone",
         "publication_heartbeat", "subscription_heartbeat", "publication_acknack", "subscription_acknack",
-        "message", "message_heartbeat", "heartbeat", "acknack", "gap",
+        "message", "message_heartbeat", "group_message", "group_message_heartbeat", "heartbeat", "acknack", "gap",
     }  # fmt: skip
 
 
@@ -197,6 +197,16 @@ def test_a_message_is_sent_with_its_length(size: int) -> None:
     data, beat = directed(both["message_heartbeat"].octets)
     assert data.payload == text
     assert beat == Heartbeat(KEY, b"\0\0\2\3", FIRST, LAST, COUNT)
+
+
+def test_a_message_for_a_group_names_nobody() -> None:
+    both = compose(["group_message", "group_message_heartbeat"], size=3)
+    text, anybody = b"\0\1\0\0" + TEXT[:12], bytes(4)
+    (data,) = read(both["group_message"].octets)
+    assert data == Data(anybody, b"\0\0\2\3", NUMBER, text, b"", FLAG_D)
+    again, beat = read(both["group_message_heartbeat"].octets)
+    assert again == data
+    assert beat == Heartbeat(anybody, b"\0\0\2\3", FIRST, LAST, COUNT)
 
 
 def test_heartbeats_acknacks_and_gaps_have_their_numbers(composed: dict[str, Composed]) -> None:

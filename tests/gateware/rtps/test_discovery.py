@@ -8,7 +8,7 @@ import pytest
 
 from engine.rtps import hand
 from gateware.frames import STALLS
-from gateware.rtps.discovering import Node, address, prefix
+from gateware.rtps.discovering import GROUP_PORT, Node, address, prefix
 from gateware.words import words
 from roslet.gateware.rtps import ports
 from roslet.gateware.rtps.tables import Local
@@ -263,6 +263,48 @@ def test_endpoints_that_match_get_a_proxy(e: str, stalls: int) -> None:
         assert node.endpoint(1)[2:5] == [address("10.0.0.1"), 7411, 77]
 
     Node(stalls=stalls).run(script)
+
+
+OURS = hand.locator("239.255.0.1", GROUP_PORT + 1)
+
+
+@pytest.mark.parametrize(
+    ("participant", "endpoint_", "in_group"),
+    [
+        ([], [], False),
+        ([(0x48, OURS)], [], True),
+        ([], [(0x30, OURS)], True),
+        ([(0x48, hand.locator("239.255.0.1", GROUP_PORT))], [], False),  # that is discovery's port
+        ([(0x48, hand.locator("239.255.0.2", GROUP_PORT + 1))], [], False),
+        ([(0x48, hand.locator("239.255.0.2", GROUP_PORT + 1)), (0x48, OURS)], [], True),
+        # With a locator of its own, what holds by default does not.
+        ([(0x48, OURS)], [(0x2F, hand.locator("10.0.0.9", 1234))], False),
+        ([], [(0x2F, hand.locator("10.0.0.9", 1234)), (0x30, OURS)], True),
+        # Behind the gateway our group is not heard.
+        ([(0x31, hand.locator("172.16.0.9", 7411)), (0x48, OURS)], [], False),
+        ([(0x31, hand.locator("172.16.0.9", 7411))], [(0x30, OURS)], False),
+        ([], [(0x30, OURS), (0x2F, hand.locator("172.16.0.9", 1234))], False),
+    ],
+)
+@pytest.mark.parametrize("e", "<>")
+def test_who_listens_to_the_group_within_our_subnet_may_get_messages_there(
+    e: str, participant: list[tuple[int, bytes]], endpoint_: list[tuple[int, bytes]], in_group: bool
+) -> None:
+    def swapped(octets: bytes) -> bytes:  # kind and port are numbers
+        return octets if e == "<" else octets[3::-1] + octets[7:3:-1] + octets[8:]
+
+    def said(parameters: list[tuple[int, bytes]]) -> list[bytes]:
+        return [hand.parameter(pid, swapped(octets), e) for pid, octets in parameters]
+
+    async def script(node: Node) -> None:
+        guid = hand.parameter(0x50, prefix(1) + hand.PARTICIPANT, e)
+        meta = hand.parameter(0x32, hand.locator("10.0.0.1", 7410, e), e)
+        await node.say(PARTICIPANT, hand.payload(guid, meta, *said(participant), e=e), prefix(1))
+        came = await node.tell(endpoint(R, "rt/sure", "T2", 1, e, reliability(2, e), *said(endpoint_)))
+        assert came.matched == 1
+        assert node.in_group(0) == in_group
+
+    Node().run(script)
 
 
 def test_of_a_transient_local_writer_all_is_wanted_from_the_first_on() -> None:

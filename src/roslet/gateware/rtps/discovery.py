@@ -28,9 +28,9 @@ class Discovery(wiring.Component):
     """The table of participants, and that of their endpoints that match ours.
 
     Ports: `i`, parameter lists (`Submessages`); `alive` and `matched`, a bit for each participant and user proxy there is;
-    `peers`, `own`, read ports, and `write`; `addresses`, `domain`, ours; `heard` with `heard_slot`, a sign of life; `tick`,
-    high for a cycle each second; `hold` and `idle`, of the walker, which waits while leases are looked at; `due`,
-    something must be sent for a proxy; `greet` with `greet_slot`, this participant must hear of us, as it is new.
+    `peers`, `own`, read ports, and `write`; `addresses`, `group_port`, `domain`, ours; `heard` with `heard_slot`, a sign of
+    life; `tick`, high for a cycle each second; `hold` and `idle`, of the walker, which waits while leases are looked at;
+    `due`, something must be sent for a proxy; `greet` with `greet_slot`, this participant must hear of us, as it is new.
 
     - A participant that announces itself has the first free slot, with proxies of its discovery endpoints, from which all
       is wanted and to which all is sent. Its next announcements, in other datagrams, move it. It goes, and its endpoints
@@ -56,6 +56,7 @@ class Discovery(wiring.Component):
                 "own": Out(ReadSignature(own.address_bits)),
                 "write": Out(WriteSignature(peers.address_bits)),
                 "addresses": In(ADDRESSES),
+                "group_port": In(16),
                 "domain": In(8),
                 "heard": In(1),
                 "heard_slot": In(8),
@@ -102,6 +103,7 @@ class Discovery(wiring.Component):
             m.d.sync += heard.bit_select(self.heard_slot, 1).eq(1)
         m.d.comb += [
             parameters.addresses.eq(self.addresses),
+            parameters.group_port.eq(self.group_port),
             parameters.domain.eq(self.domain),
             self.drop_malformed.eq(parameters.drop_malformed),
             parameters.own.data.eq(self.own.data),
@@ -128,6 +130,8 @@ class Discovery(wiring.Component):
                     slot.eq(meta.slot),
                     self._entity.eq(read.entity),
                 ]
+                with m.If(parameters.done):  # then nobody else asks, whatever follows
+                    m.d.comb += self._address.eq(peers.scratch(tables.SCRATCH_ENTITY))
                 with m.If(ticked & self.idle):
                     m.d.sync += [ticked.eq(0), sweeping.eq(1), slot.eq(0)]
                     m.next = "SWEEP"
@@ -135,7 +139,6 @@ class Discovery(wiring.Component):
                     m.next = "PARTICIPANT"
                 with m.Elif(parameters.done):
                     m.next = "KEY"
-                    m.d.comb += self._address.eq(peers.scratch(tables.SCRATCH_ENTITY))
             with m.State("PROCEED"):
                 m.d.comb += parameters.proceed.eq(1)
                 m.next = "IDLE"
@@ -241,11 +244,10 @@ class Discovery(wiring.Component):
             m.d.comb += self._address.eq(peers.scratch(source))
             m.d.sync += step.eq(step + 1)
             with m.If(step >= READ_LATENCY):
-                self._write(
-                    m,
-                    peers.participant(slot, before),
-                    Mux(before >= tables.LEASE, lease, self.peers.data),
-                )
+                near, listens = self._parameters.near, self._parameters.listens
+                beside = Mux(before == tables.USER_PORT, Cat(near & listens, near), 0)
+                value = self.peers.data | beside << tables.PORT_GROUP
+                self._write(m, peers.participant(slot, before), Mux(before >= tables.LEASE, lease, value))
             with m.If(step == tables.LEFT + READ_LATENCY):
                 m.d.sync += [
                     step.eq(0),
@@ -350,12 +352,14 @@ class Discovery(wiring.Component):
             m.d.comb += self._address.eq(Mux(read.user, peers.scratch(where), peers.participant(slot, where)))
             # Before all that is kept, where it gets what was before it: numbers are compared by their difference.
             first = Signal(32)
+            near = Mux(read.user, self._parameters.near, self.peers.data[tables.PORT_NEAR])
+            group = self._parameters.listens & near
             m.d.sync += first.eq(last + Mux(transient, C(-MAX_HISTORY, 32), C(1, 32)))
             words = [
                 self._entity,
                 Cat(slot, local, C(0, 8 - len(local)), is_writer, reliable),
                 self.peers.data,
-                self.peers.data,
+                self.peers.data | group << tables.PORT_GROUP,
                 Mux(is_writer, transient, first),  # NEXT_LO, ACKED
                 Mux(is_writer, 0, first),  # NEXT_HI, ASK_FROM
                 Mux(is_writer, 0, last),  # LAST, ASK_TO

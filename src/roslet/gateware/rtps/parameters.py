@@ -28,6 +28,10 @@ PL_CDR = 0x02
 _NEVER = 0x7FFFFFFF
 """Seconds of DURATION_INFINITE."""
 LOOPBACK = 127
+GROUP = int.from_bytes(locator.SPDP_MULTICAST_ADDRESS, "little")
+"""The group of all participants, as a word has it."""
+USER_GROUP_PORT = locator.user_multicast_port(0) - locator.metatraffic_multicast_port(0)
+"""How far behind the port of announcements that of messages to the group is. RTPS 2.3, 9.6.1.1."""
 MAX_LEASE = 0xFFFF
 """Seconds: leases are taken to be no longer, 18 hours."""
 
@@ -53,6 +57,7 @@ class _What(enum.IntEnum):
     PRESENTATION = 15
     PARTITION = 16
     REPRESENTATION = 17
+    GROUP = 18
 
 
 _OF_PARTICIPANTS = {
@@ -60,12 +65,14 @@ _OF_PARTICIPANTS = {
     pl.PID_PARTICIPANT_LEASE_DURATION: _What.LEASE,
     pl.PID_METATRAFFIC_UNICAST_LOCATOR: _What.LOCATOR,
     pl.PID_DEFAULT_UNICAST_LOCATOR: _What.USER_LOCATOR,
+    pl.PID_DEFAULT_MULTICAST_LOCATOR: _What.GROUP,
     pl.PID_DOMAIN_ID: _What.DOMAIN,
     pl.PID_DOMAIN_TAG: _What.TAG,
 }
 _OF_ENDPOINTS = {
     pl.PID_ENDPOINT_GUID: _What.GUID,
     pl.PID_UNICAST_LOCATOR: _What.USER_LOCATOR,
+    pl.PID_MULTICAST_LOCATOR: _What.GROUP,
     pl.PID_TOPIC_NAME: _What.TOPIC,
     pl.PID_TYPE_NAME: _What.TYPE,
     pl.PID_RELIABILITY: _What.RELIABILITY,
@@ -101,11 +108,13 @@ be understood; `reliable` and `durability`, kinds, as offered or requested."""
 class Parameters(wiring.Component):
     """Reads one list at a time.
 
-    Ports: `i`, lists with their encapsulation header; `peers` and `own`, read ports; `write`; `addresses`, `domain`, ours:
+    Ports: `i`, lists with their encapsulation header; `peers` and `own`, read ports; `write`; `addresses`, `group_port`
+    (where all are announced to), `domain`, ours:
     that is not looked at where `judge_domain` is false.
     `read` is what the list has said, and `same` a bit for each of our endpoints of the other kind: it has this topic and
-    this type. Both are steady while `done` is high: the list's good end is at `i`, and stays there until `proceed` is high
-    for a cycle. After a bad end the next list is read.
+    this type. `near`: where it takes the user's messages is in our subnet; `listens`: it takes them by the group of all
+    participants as well, at the port for these. All are steady while `done` is high: the list's good end is at `i`, and
+    stays there until `proceed` is high for a cycle. After a bad end the next list is read.
 
     In the scratch area there are then the words of a participant, of which `read` says whether they were there, or of an
     endpoint its locator. Of several locators the first in our own subnet is taken, else the first.
@@ -124,11 +133,14 @@ class Parameters(wiring.Component):
                 "own": Out(ReadSignature(own.address_bits)),
                 "write": Out(WriteSignature(peers.address_bits)),
                 "addresses": In(ADDRESSES),
+                "group_port": In(16),
                 "domain": In(8),
                 "done": Out(1),
                 "proceed": In(1),
                 "read": Out(READ),
                 "same": Out(self.locals),
+                "near": Out(1),
+                "listens": Out(1),
                 "drop_malformed": Out(1),
             }
         )
@@ -152,13 +164,19 @@ class Parameters(wiring.Component):
         masked = Signal(32)
         # Of a locator whose words are passing
         self._usable, self._port = Signal(), Signal(16)
+        self._user_group_port = Signal(16)
         self._near = [Signal(), Signal()]  # what was taken, of each kind, is in our subnet
+        m.d.comb += [
+            self._user_group_port.eq(self.group_port + USER_GROUP_PORT),
+            self.near.eq(Mux(read.user, self._near[1], self._near[0])),
+        ]
 
         with m.FSM():
             with m.State("IDLE"):
                 default = meta.kind == ports.PUBLICATIONS  # writers are reliable if they say nothing
                 m.d.sync += [read.eq(0), read.reliable.eq(default), self.same.eq(-1)]
                 m.d.sync += [near.eq(0) for near in self._near]
+                m.d.sync += self.listens.eq(0)
                 m.d.sync += read.lease.eq(DEFAULT_LEASE // 1_000_000_000)
                 with m.If(ended):
                     m.next = "DONE"  # what is gone may have no list
@@ -265,6 +283,8 @@ class Parameters(wiring.Component):
                     self._locator(
                         m, at, step, word, number, last, flag, ip, ((word ^ own_ip) & mask) == 0, keep
                     )
+            with m.Case(_What.GROUP):
+                self._group(m, at, step, word, number, last)
             with m.Case(_What.DOMAIN):
                 if self._judge_domain:
                     refuse(first & (number != self.domain))
@@ -325,6 +345,16 @@ class Parameters(wiring.Component):
                 keep(self._peers.scratch(Mux(step == 0, ip, ip + 1)), Mux(step == 0, word, port))
                 with m.If(last):
                     m.d.sync += [flag.eq(1), near.eq(is_near)]
+
+    def _group(self, m: Module, at: Value, step: Value, word: Value, number: Value, last: Value) -> None:
+        """A locator of a group: whether it is the one that we know, at the port for the user's messages."""
+        usable = self._usable
+        with m.If(at == 0):
+            m.d.sync += usable.eq(number == locator.LOCATOR_KIND_UDPv4)
+        with m.Elif((at == 1) & (step != 0)):
+            m.d.sync += usable.eq(usable & (number == self._user_group_port))
+        with m.Elif((at == 5) & last & usable & (word == GROUP)):
+            m.d.sync += self.listens.eq(1)
 
     def _text(
         self,

@@ -9,7 +9,7 @@ from amaranth.hdl import Cat, Module, Signal, Value
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
-from roslet.gateware.fifo import FrameRegister
+from roslet.gateware.fifo import MessageRegister
 from roslet.gateware.meta import ADDRESSES, UDP_RX, UDP_TX, LookupSignature
 from roslet.gateware.rtps.composer import Composer
 from roslet.gateware.rtps.discovery import Discovery
@@ -142,10 +142,10 @@ class Participant(wiring.Component):
 
         connect(m, flipped(self.udp_rx), queue.i)
         connect(m, queue.o, walker.i)
-        m.submodules.bodies = bodies = FrameRegister(SUBMESSAGE, MessageSignature)
+        m.submodules.bodies = bodies = MessageRegister(SUBMESSAGE)
         connect(m, walker.o, bodies.i)
         connect(m, bodies.o, submessages.i)
-        m.submodules.lists = lists = FrameRegister(DISCOVERY, MessageSignature)
+        m.submodules.lists = lists = MessageRegister(DISCOVERY)
         connect(m, submessages.discovery, lists.i)
         connect(m, lists.o, discovery.i)
         connect(m, outbox.o, flipped(self.udp_tx))
@@ -170,6 +170,7 @@ class Participant(wiring.Component):
             discovery.heard.eq(walker.heard),
             discovery.heard_slot.eq(walker.heard_slot),
             discovery.addresses.eq(self.addresses),
+            discovery.group_port.eq(self.group_port),
             discovery.domain.eq(0 if self._domain is None else self._domain),
             discovery.tick.eq(self.tick),
             submessages.room.eq(self.room),
@@ -227,22 +228,29 @@ class Participant(wiring.Component):
                 m.d.comb += [user.data.eq(word) for user in users]
                 given[side, name] = read.addr, word
         write, ours = peers.write_port(), own.write_port()
-        # Of peers in the cycle after, as what is written takes long.
+        # In the cycle after, as what is written takes long; but for what comes from outside, while this is held in reset
+        later = WriteSignature(len(ours.addr)).create()
         for domain, port, writers in (
             (m.d.sync, write, (walker.source, submessages.write, discovery.write)),
-            (m.d.comb, ours, (sender.write, self.own)),
+            (m.d.sync, later, (sender.write,)),
+            (m.d.comb, ours, (later, self.own)),
         ):
             domain += [
                 port.en.eq(Cat(writer.en for writer in writers).any()),
                 port.addr.eq(_either(writer.addr for writer in writers)),
                 port.data.eq(_either(writer.data for writer in writers)),
             ]
-        # Block RAM gives anything of a word that is being written. Only who sends may read one, of a peer: it gets the new.
-        address, word = given["sending", "peers"]
-        looked_at, written, wrote, new = Signal.like(address), Signal.like(write.addr), Signal(), Signal(32)
-        m.d.sync += [looked_at.eq(address), written.eq(write.addr), wrote.eq(write.en), new.eq(write.data)]
-        with m.If(wrote & (looked_at == written)):
-            m.d.sync += word.eq(new)
+        # Block RAM gives anything of a word that is being written. Each side may read one of the other's: it gets the new.
+        for port, (address, word) in ((write, given["sending", "peers"]), (ours, given["receiving", "own"])):
+            looked_at, written, wrote, new = Signal.like(address), Signal.like(address), Signal(), Signal(32)
+            m.d.sync += [
+                looked_at.eq(address),
+                written.eq(port.addr),
+                wrote.eq(port.en),
+                new.eq(port.data),
+            ]
+            with m.If(wrote & (looked_at == written)):
+                m.d.sync += word.eq(new)
 
 
 def _either(values: Any) -> Any:

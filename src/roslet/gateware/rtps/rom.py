@@ -264,6 +264,10 @@ class Rom:
         body = [_register(Register.ENCAPSULATION), (Op.MESSAGE, 0)]
         message = self._data((key, writer), body, length=True)
         beat = self._heartbeat((key, writer))
+        to_group = self._data((guid.ENTITYID_UNKNOWN, writer), body, length=True)
+        self._add("group_message", [*self._header, *to_group])
+        beat_group = self._heartbeat((guid.ENTITYID_UNKNOWN, writer))
+        self._add("group_message_heartbeat", [*self._header, *to_group, *beat_group])
         self._add("message", [*self._directed, *message])
         self._add("message_heartbeat", [*self._directed, *message, *beat])
         self._add("heartbeat", [*self._directed, *beat])

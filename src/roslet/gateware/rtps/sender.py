@@ -11,15 +11,14 @@ from amaranth.lib.wiring import In, Out
 from roslet.gateware.octets import pick
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.composer import SUBJECT
+from roslet.gateware.rtps.parameters import GROUP, USER_GROUP_PORT
 from roslet.gateware.rtps.ports import READ_LATENCY, ReadSignature, WriteSignature
 from roslet.gateware.rtps.rom import REGISTER_BITS, Register, Rom
 from roslet.gateware.rtps.scan import lowest
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 from roslet.gateware.rtps.turns import JOB
 from roslet.gateware.words import MessageSignature
-from roslet.wire.rtps import locator
 
-GROUP = int.from_bytes(locator.SPDP_MULTICAST_ADDRESS, "little")
 CDR_LE = 0x0100
 """The encapsulation header of our messages, as a word has it."""
 AGE = signed(16)
@@ -31,15 +30,18 @@ class Sender(wiring.Component):
     """Serves who is next.
 
     Ports: `publish0` .. for each writer of the user, the first `users` of the tables' writers: its messages. `job`, `valid`,
-    `taken`, of `Turns`; `matched`, the user proxies that there are; `group_port`, where all are to be announced to;
-    `peers` and `own`, read ports, and `write`; `template`, `start`, `done`, `which`, `register`, `subject`, of the composer;
+    `taken`, of `Turns`; `matched`, the user proxies that there are; `group_port`, where all are to be announced to,
+    and messages for the group at the next; `peers` and `own`, read ports, and `write`; `template`, `start`, `done`, `which`,
+    `register`, `subject`, of the composer;
     `room`, `busy`, `finish`, `ip`, `port`, of the outbox; `writers`, `readers`, a bit for each of ours that is enabled;
     `again`, high for a cycle when every proxy must be served once.
 
     - When one of ours is enabled or disabled, all are told of again, under new numbers: of those that are not enabled, that
       they are gone.
     - A message is kept, replacing the oldest that its writer keeps, and sent at once to each reader that matches, with a
-      HEARTBEAT to those that are reliable. Between two messages somebody else is served.
+      HEARTBEAT to those that are reliable. Those that are in the group too, and need nothing older than the others, get it
+      there together, if there were several of them at the writer's message before. Between two messages somebody else is
+      served.
     - A peer's writer gets an ACKNACK when it is due: what is missing up to its last, `window` of it at most, as peers put
       what they repeat into one datagram.
     - A peer's reader gets, when it has asked, what it has asked for, of what is kept; a GAP for what is not; and a
@@ -95,13 +97,21 @@ class Sender(wiring.Component):
         self._padding = Signal(2)
         self._publishing, self._yield, self._asked = Signal(), Signal(), Signal()
         self._is_writer, self._reliable = Signal(), Signal()  # the peer's endpoint
+        self._to_group = Signal()  # a message goes to the group now
         self._local = Signal(8)
         self._count = Signal(32)
         m.d.comb += self.subject.entity.eq(self._local + 1)
         self._increased = Signal(32)
         m.d.comb += self._increased.eq(self.own.data + 1)
         self._registers(m)
-        with m.FSM():
+        # Asked for of peers: this word of the proxy that is served, or of its participant. In IDLE it is the job's, whose
+        # turn comes next; in EACH READER that of an endpoint.
+        self._word, self._of_participant = Signal(4), Signal()
+        self._stepping, self._step = Signal(), Signal(range(self._peers.endpoints))
+        idle, composing = Signal(), Signal()
+        self._ask(m, idle, composing)
+        with m.FSM() as fsm:
+            m.d.comb += [idle.eq(fsm.ongoing("IDLE")), composing.eq(fsm.ongoing("COMPOSING"))]
             self._idle(m)
             self._announcements(m)
             self._who(m)
@@ -121,6 +131,19 @@ class Sender(wiring.Component):
         return m
 
     # -- what states share
+
+    def _ask(self, m: Module, idle: Value, composing: Value) -> None:
+        """Of peers what is asked for; while the composer asks, nothing."""
+        peers, subject, job = self._peers, self.subject, self.job
+        slot = Mux(idle, job.index, subject.slot)
+        endpoint = Mux(idle, job.index, Mux(self._stepping, self._step, subject.endpoint))
+        with m.If(~composing):
+            with m.If(self._of_participant):
+                m.d.comb += self.peers.addr.eq(peers.participant(slot, self._word))
+            with m.Elif(subject.builtin & ~idle):
+                m.d.comb += self.peers.addr.eq(peers.builtin(slot, subject.kind, self._word))
+            with m.Else():
+                m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, self._word))
 
     def _registers(self, m: Module) -> None:
         """What templates refer to."""
@@ -173,14 +196,6 @@ class Sender(wiring.Component):
         of_builtin = Mux(subject.kind[0], start[f"subscription_{name}"], start[f"publication_{name}"])
         return Mux(subject.builtin, of_builtin, start[name])
 
-    def _proxy(self, word: int) -> Value:
-        subject = self.subject
-        return Mux(
-            subject.builtin,
-            self._peers.builtin(subject.slot, subject.kind, word),
-            self._peers.endpoint(subject.endpoint, word),
-        )
-
     def _writer_word(self, word: int) -> Value:
         return self._own.writer(self._local, word)
 
@@ -218,7 +233,6 @@ class Sender(wiring.Component):
                 with m.If(job.announce):
                     m.next = "ANNOUNCE"
                 with m.If(job.greet):
-                    m.d.comb += self.peers.addr.eq(self._peers.participant(job.index, tables.META_IP))
                     m.next = "GREET"
             if self._users:
                 with m.Elif(pending.any()):
@@ -229,8 +243,10 @@ class Sender(wiring.Component):
                     else:
                         m.d.sync += self._local.eq(0)
                     m.next = "PUBLISH"
-            with m.If(~job.greet):
-                m.d.comb += self.peers.addr.eq(self._peers.endpoint(job.index, tables.INFO))
+            m.d.comb += [
+                self._of_participant.eq(job.greet),
+                self._word.eq(Mux(job.greet, tables.META_IP, tables.INFO)),
+            ]
 
         # All endpoints are told of again, by new numbers: of writers, then of readers.
         with m.State("CHANGED"):
@@ -257,7 +273,7 @@ class Sender(wiring.Component):
             m.d.sync += [self.ip.eq(GROUP), self.port.eq(self.group_port)]
             m.next = "ANNOUNCEMENT"
         with m.State("GREET"):
-            m.d.comb += self.peers.addr.eq(self._peers.participant(self.subject.slot, tables.META_PORT))
+            m.d.comb += [self._of_participant.eq(1), self._word.eq(tables.META_PORT)]
             m.next = "GREET IP"
         with m.State("GREET IP"):
             m.d.sync += self.ip.eq(self.peers.data)
@@ -272,18 +288,15 @@ class Sender(wiring.Component):
     # -- a proxy
 
     def _who(self, m: Module) -> None:
-        peers, subject = self._peers, self.subject
+        subject = self.subject
         with m.State("LOOK"):
             m.next = "WHO"
         with m.State("WHO"):
             info = self.peers.data
-            m.d.comb += self.peers.addr.eq(
-                Mux(
-                    subject.builtin,
-                    peers.participant(subject.slot, tables.META_IP),
-                    peers.endpoint(subject.endpoint, tables.IP),
-                )
-            )
+            m.d.comb += [
+                self._of_participant.eq(subject.builtin),
+                self._word.eq(Mux(subject.builtin, tables.META_IP, tables.IP)),
+            ]
             m.d.sync += [self._is_writer.eq(subject.kind[1]), self._reliable.eq(1)]
             with m.If(~subject.builtin):
                 m.d.sync += [
@@ -294,13 +307,10 @@ class Sender(wiring.Component):
                 ]
             m.next = "WHERE"
         with m.State("WHERE"):
-            m.d.comb += self.peers.addr.eq(
-                Mux(
-                    subject.builtin,
-                    peers.participant(subject.slot, tables.META_PORT),
-                    peers.endpoint(subject.endpoint, tables.PORT),
-                )
-            )
+            m.d.comb += [
+                self._of_participant.eq(subject.builtin),
+                self._word.eq(Mux(subject.builtin, tables.META_PORT, tables.PORT)),
+            ]
             m.next = "IDLE"
             with m.If(self._is_writer & self._asked):
                 m.next = "WRITER"
@@ -312,11 +322,11 @@ class Sender(wiring.Component):
         own = self._own
         with m.State("WRITER"):
             m.d.sync += self.ip.eq(self.peers.data)
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.LAST))
+            m.d.comb += self._word.eq(tables.LAST)
             m.next = "WRITER PORT"
         with m.State("WRITER PORT"):
             m.d.sync += self.port.eq(self.peers.data)
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.NEXT_LO))
+            m.d.comb += self._word.eq(tables.NEXT_LO)
             m.next = "WANTED"
         with m.State("WANTED"):
             m.d.sync += self._last.eq(self.peers.data)
@@ -348,7 +358,7 @@ class Sender(wiring.Component):
         with m.State("READER PORT"):
             m.d.sync += self.port.eq(self.peers.data)
             m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST_HI))
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.START))
+            m.d.comb += self._word.eq(tables.START)
             m.next = "LAST"
         with m.State("LAST"):
             most = Mux(subject.kind[0], C(kinds[1], AGE), C(kinds[0], AGE))
@@ -357,14 +367,14 @@ class Sender(wiring.Component):
                 self._last.eq(self.own.data + Mux(subject.builtin, most, 0)),
             ]
             m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_COUNT))
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.ACKED))
+            m.d.comb += self._word.eq(tables.ACKED)
             m.next = "START"
         with m.State("START"):
             age = self._age_of(self.peers.data)
             m.d.sync += [start.eq(Mux(subject.builtin, MAX_AGE, age)), self._last_high.eq(self.own.data)]
             with m.If(subject.builtin):
                 m.d.sync += self._last_high.eq(0)
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.ASK_FROM))
+            m.d.comb += self._word.eq(tables.ASK_FROM)
             m.next = "ACKED"
         with m.State("ACKED"):
             m.d.sync += [
@@ -373,7 +383,7 @@ class Sender(wiring.Component):
             ]
             with m.If(~subject.builtin):
                 m.d.sync += self._oldest.eq((self.own.data - 1)[:16].as_signed())
-            m.d.comb += self.peers.addr.eq(self._proxy(tables.ASK_TO))
+            m.d.comb += self._word.eq(tables.ASK_TO)
             m.next = "ASK FROM"
         with m.State("ASK FROM"):
             m.d.sync += self._age.eq(self._age_of(self.peers.data))
@@ -450,7 +460,11 @@ class Sender(wiring.Component):
             self._compose(m, self._by_kind("heartbeat"), "IDLE")
             if self._users:
                 with m.If(self._publishing):
-                    self._compose(m, self._rom.start["message_heartbeat"], "NEXT READER")
+                    start = self._rom.start
+                    template = Mux(
+                        self._to_group, start["group_message_heartbeat"], start["message_heartbeat"]
+                    )
+                    self._compose(m, template, "NEXT READER")
 
     # -- a message of the user's
 
@@ -472,8 +486,14 @@ class Sender(wiring.Component):
         reads = Signal(range(latency + 1))  # under way
         ours = Signal()
         start = Signal(AGE)
+        # Of this message's readers one, several are in the group; of each writer's last one there were several.
+        in_group, one_there, several_there = Signal(), Signal(), Signal()
+        grouped = Signal()  # it has gone to the group
+        several = Signal(self._users)
+        its = self._local[: (self._users - 1).bit_length()]
         with m.State("PUBLISH"):
             m.d.comb += self.own.addr.eq(self._writer_word(tables.WRITER_LAST))
+            m.d.sync += [grouped.eq(0), one_there.eq(0), several_there.eq(0)]
             m.d.sync += [words.eq(0), long.eq(0), self._age.eq(0), endpoint.eq(0)]
             m.next = "NUMBERED"
         with m.State("NUMBERED"):
@@ -525,7 +545,7 @@ class Sender(wiring.Component):
         with m.State("EACH READER"):  # an endpoint a cycle
             info = self.peers.data
             is_reader = self.matched.bit_select(given_of, 1) & ~info[tables.INFO_WRITER]
-            m.d.comb += self.peers.addr.eq(peers.endpoint(step, tables.INFO))
+            m.d.comb += [self._stepping.eq(1), self._step.eq(step), self._word.eq(tables.INFO)]
             m.d.sync += [
                 step.eq(step + 1),
                 addressed.eq(step),
@@ -545,34 +565,50 @@ class Sender(wiring.Component):
             with m.If(reads != latency):
                 m.d.sync += reads.eq(reads + 1)
             with m.Elif(~ours & (shown == peers.endpoints - 1)):
-                m.d.sync += self._yield.eq(1)
-                m.next = "IDLE"
+                m.next = "PUBLISHED"
         with m.State("THE READER"):
-            m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.IP))
+            m.d.comb += self._word.eq(tables.IP)
             m.next = "READER IP"
         with m.State("READER IP"):
-            m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.PORT))
+            m.d.comb += self._word.eq(tables.PORT)
             m.next = "READER WHERE"
         with m.State("READER WHERE"):
             m.d.sync += self.ip.eq(self.peers.data)
-            m.d.comb += self.peers.addr.eq(peers.endpoint(endpoint, tables.START))
+            m.d.comb += self._word.eq(tables.START)
             m.next = "READER'S PORT"
         with m.State("READER'S PORT"):
-            m.d.sync += self.port.eq(self.peers.data)
+            m.d.sync += [self.port.eq(self.peers.data), in_group.eq(self.peers.data[tables.PORT_GROUP])]
             m.next = "READER START"
         with m.State("READER START"):
             m.d.sync += start.eq(self._age_of(self.peers.data))
             m.next = "READER OLDEST"
         with m.State("READER OLDEST"):
-            with m.If(start < self._oldest):
-                m.d.sync += self._oldest.eq(start)
             with m.If(self._reliable):
                 m.next = "HEARTBEAT"
             with m.Else():
                 self._compose(m, self._rom.start["message"], "NEXT READER")
+            with m.If(start < self._oldest):
+                m.d.sync += self._oldest.eq(start)
+            with m.Elif(in_group):  # what is kept is the same for all of these
+                m.d.sync += [one_there.eq(1), several_there.eq(one_there)]
+                with m.If(grouped):
+                    m.next = "NEXT READER"
+                with m.Elif(several.bit_select(its, 1)):
+                    m.d.sync += [
+                        self._to_group.eq(1),
+                        grouped.eq(1),
+                        self.ip.eq(GROUP),
+                        self.port.eq(self.group_port + USER_GROUP_PORT),
+                    ]
+                    with m.If(self._choose([C(one.reliable, 1) for one in own.writers])):
+                        m.next = "HEARTBEAT"
+                    with m.Else():
+                        self._compose(m, self._rom.start["group_message"], "NEXT READER")
         with m.State("NEXT READER"):
-            m.d.sync += [step.eq(endpoint + 1), reads.eq(0)]
+            m.d.sync += [step.eq(endpoint + 1), reads.eq(0), self._to_group.eq(0)]
             m.next = "EACH READER"
             with m.If(endpoint == peers.endpoints - 1):
-                m.d.sync += self._yield.eq(1)
-                m.next = "IDLE"
+                m.next = "PUBLISHED"
+        with m.State("PUBLISHED"):
+            m.d.sync += [several.bit_select(its, 1).eq(several_there), self._yield.eq(1)]
+            m.next = "IDLE"

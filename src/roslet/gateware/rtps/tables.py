@@ -41,6 +41,9 @@ SCRATCH = 16
 INFO_SLOT, INFO_LOCAL = 0, 8  # a byte each
 INFO_WRITER, INFO_RELIABLE = 16, 17
 
+# Bits of USER_PORT and PORT, beside the port: the group is as good; of USER_PORT, it is in our subnet
+PORT_GROUP, PORT_NEAR = 16, 17
+
 MAX_PEERS = 128
 """Their numbers have eight bits, with one to spare."""
 EVERYTHING = 0x7FFFFFFF
