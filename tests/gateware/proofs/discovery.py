@@ -30,7 +30,7 @@ IDS = 2
 """Bits in which prefixes differ, and entity ids."""
 LEASE = 2
 """Bits of a lease."""
-LIST = 38
+LIST = 33
 """Cycles of a list, at most: an endpoint whose id each place has, as have other participants' or those of the other kind."""
 SWEEP = 20
 """Cycles of a sweep, at most: all are removed."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from amaranth.hdl import Assert, Cat, Const, Cover, Module, Mux, Signal
+from amaranth.hdl import Assert, Cat, Const, Cover, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
-from gateware.formal import Bug, Spec
+from gateware.formal import Bug, Spec, assume_steady
 from gateware.proofs.rtps import waits
 from roslet.gateware import slip, slip_stack
 from roslet.gateware.stream import FrameSignature
@@ -114,7 +114,16 @@ class LineSpec(Spec):
     module = slip
     quick, deep = 26, 40
     bugs = (
-        Bug("o.steady", "o.valid.eq(item.valid)", "o.valid.eq(item.valid & ~o.ready)"),
+        Bug(
+            "o.bad_only_at_end",
+            "o.payload.data.eq(octet)",
+            "o.payload.data.eq(octet), o.payload.bad.eq(count == 1)",
+        ),
+        Bug("good", "Mux(is_end, slip.ESC_END, slip.ESC_ESC)", "Mux(is_end, slip.ESC_END, slip.ESC)"),
+        Bug("octet", "Mux(octet[0], slip.ESC, slip.END)", "Mux(octet[1], slip.ESC, slip.END)"),
+        Bug("length", "is_end.eq(item.payload.data == slip.END)", "is_end.eq(0)"),
+        Bug("dropped", "count == self._max_size", "count == self._max_size - 1"),
+        Bug("on", "o.valid.eq(item.valid)", "o.valid.eq(item.valid & ~o.ready)"),
     )
 
     def block(self) -> Any:
@@ -154,4 +163,48 @@ class LineSpec(Spec):
         ]
 
 
-SPECS: tuple[type[Spec], ...] = (ReceiverSpec, LineSpec)
+class GroupFilterSpec(Spec):
+    """With one group, which may be joined, and stays so. `passes`: octets do as they come, and `end`: so do ends, of packets
+    with a whole header, unless the destination is a group's that is neither joined nor 224.0.0.1; `told`: that is counted."""
+
+    module = slip_stack
+    quick, deep = 23, 46
+    bugs = (
+        Bug("o.steady", "o.valid.eq(i.valid),", "o.valid.eq(i.valid & ~o.ready),"),
+        Bug("o.bad_only_at_end", "~joined.any() & i.payload.end", "~joined.any()"),
+        Bug("passes", "i.ready.eq(o.ready),", "i.ready.eq(1),"),
+        Bug("end", "((first & valid) | (~first & bit))", "((first & valid) | ~first)"),
+        Bug("told", "unwanted & ~i.payload.bad", "unwanted"),
+    )
+
+    def block(self) -> Any:
+        return self.gates.GroupFilter(1)
+
+    def properties(self, m: Module) -> None:
+        dut = self.dut
+        rules, _ = self.assume(m, "i"), self.check(m, "o")
+        i, o = dut.i.stream, dut.o.stream
+        (group,) = dut.groups
+        assume_steady(m, Value.cast(dut.groups))
+        count, destination = Signal(range(64)), Signal(32)
+        with m.If(rules.ended):
+            m.d.sync += count.eq(0)
+        with m.Elif(rules.transfer):
+            m.d.sync += count.eq(count + ~count.all())
+            with m.If((count >= 16) & (count < 20)):  # RFC 791, 3.1
+                m.d.sync += destination.eq(Cat(destination[8:], i.payload.data))
+        is_group = destination[4:8] == 0xE
+        wanted = ~is_group | (destination == 0x010000E0) | (group.valid & (destination == Value.cast(group.ip)))
+        same = (o.payload.data == i.payload.data) & (o.payload.end == i.payload.end)
+        at_end = i.valid & i.payload.end
+        counts = at_end & (count >= 20)
+        m.d.comb += [
+            Assert((o.valid == i.valid) & (o.ready == i.ready) & (~i.valid | same), "passes"),
+            Assert(~counts | (o.payload.bad == (i.payload.bad | ~wanted)), "end"),
+            Assert(dut.drop_group == (rules.ended & o.payload.bad & ~i.payload.bad), "told"),
+            Cover(counts & is_group & ~o.payload.bad & (destination != 0x010000E0), "joined"),
+            Cover(dut.drop_group & counts, "not joined"),
+        ]
+
+
+SPECS: tuple[type[Spec], ...] = (ReceiverSpec, LineSpec, GroupFilterSpec)

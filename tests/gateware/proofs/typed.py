@@ -16,7 +16,7 @@ from roslet.gateware.typed import deserializer, serializer
 from roslet.gen.gateware import Bounds, Plan, plan
 from roslet.idl import Registry
 
-TEXT, PAIRS = 3, 2
+TEXT, PAIRS = 4, 2
 """Octets of the text and elements of the sequence, at most: neither is all that its `length` can say."""
 _REGISTRY = Registry("ros2", environment=None)
 _LABEL = "string text\nuint16 number\n"
@@ -106,6 +106,17 @@ class _Serializer(Spec):
     body: Body
     quick, deep = 24, 40
     bound, gap = 12, 4
+    shared_bugs = (
+        Bug(
+            "o.bad_only_at_end",
+            "item.bad.eq(ends & refused)",
+            "item.bad.eq((ends & refused) | (~ends & word[31]))",
+        ),
+        Bug("octet", "value[8 * (piece.shift + octet) :][:8]", "value[8 * piece.shift :][:8]"),
+        Bug("bound", "(raw[:bits] > bound)", "(raw[:bits] > bound + 1)"),
+        Bug("no_gap", "run.eq(i.valid & free)", "run.eq(i.valid & free & self.o.stream.ready)"),
+        Bug("taken", "ends.eq(program.ended & ~position.pads)", "ends.eq(program.ended & ~refused)"),
+    )
 
     def block(self) -> Any:
         return self.gates.Serializer(self.body.plan)
@@ -150,11 +161,21 @@ class _Serializer(Spec):
 class LabelSerializerSpec(_Serializer):
     __doc__ = _Serializer.__doc__
     body = Label()
+    bugs = (
+        *_Serializer.shared_bugs,
+        Bug("o.steady", "free.eq(~full | ~emits | o.ready)", "free.eq(1)"),
+        Bug("length", "unused.eq(position.padding[:2])", "unused.eq(0)"),
+    )
 
 
 class ListSerializerSpec(_Serializer):
     __doc__ = _Serializer.__doc__
     body = List()
+    bugs = (
+        *_Serializer.shared_bugs,
+        Bug("o.steady", "free.eq(~full | o.ready)]", "free.eq(1)]"),
+        Bug("length", "~(program.is_loop | over)", "~over"),
+    )
 
 
 class _Deserializer(Spec):
@@ -168,6 +189,18 @@ class _Deserializer(Spec):
     quick, deep = 16, 26
     words = 4
     bound = 3
+    bugs = (
+        Bug("whole", "piece.lane + piece.octets - 1 - octet", "piece.lane + octet"),
+        Bug("once", "with m.If(good & ~short):", "with m.If(~short):"),
+        Bug("steady", "m.d.comb += self.o.valid.eq(1)", "m.d.comb += [self.o.valid.eq(1), store.eq(i.valid)]"),
+        Bug("kept", "(i.payload.padding > unused)", "(i.payload.padding >= unused)"),
+        Bug("reason", "(count > bound)", "(count >= bound)"),
+        Bug(
+            "taken",
+            "i.ready.eq(1),\n                    self.drop_bound",
+            "i.ready.eq(ended),\n                    self.drop_bound",
+        ),
+    )
 
     def block(self) -> Any:
         return self.gates.Deserializer(self.plan)
@@ -212,7 +245,7 @@ class _Deserializer(Spec):
             Assert(~drop[1] | text, "reason"),
             Assert(~drop[2] | short, "reason"),
             Cover(gives & big, "big endian"),
-            Cover(gives & held, "again") if False else Cover(gives & ~big, "little endian"),
+            Cover(gives & ~big, "little endian"),
             Cover(drop[0], "over"),
             Cover(drop[2], "short"),
         ]
