@@ -48,17 +48,29 @@ class PublishSpec(_Right):
     and each reason once. `long`: one that is too long never goes. `granted`: who asks gets the right, and `sent`: what is
     due goes, within some cycles in which the stream, or the user, is ready."""
 
-    quick, deep = 24, 40
+    quick, deep = 22, 40
     bugs = (
         Bug("kept", "m.d.sync += grant.eq(~rel)", "m.d.sync += grant.eq(~rel & ~wanted)"),
         Bug("mine", "with m.Elif(req & ~moving & ~begins):", "with m.Elif(req & ~begins):"),
         Bug("whole", "left.eq((self.length + 3)[2:])", "left.eq((self.length + 2)[2:])"),
-        Bug("due", "with m.If(begins):\n            m.d.sync += due.eq(0)", "with m.If(begins & o.ready):\n            m.d.sync += due.eq(0)"),
+        Bug(
+            "due",
+            "with m.If(begins):\n            m.d.sync += due.eq(0)",
+            "with m.If(begins & o.ready):\n            m.d.sync += due.eq(0)",
+        ),
         Bug("long", "self.length > self._size", "self.length > self._size + 1"),
         Bug("granted", " & ~(before & req)", ""),
         Bug("sent", "~(before & req)", "~req"),
-        Bug("o.steady", 'with m.If(o.ready):\n                    m.d.sync += [self.index', 'with m.If(1):\n                    m.d.sync += [self.index'),
-        Bug("o.bad_only_at_end", "o.payload.end.eq(left == 0)]", "o.payload.end.eq(left == 0), o.payload.bad.eq(left == 1)]"),
+        Bug(
+            "o.steady",
+            "with m.If(o.ready):\n                    m.d.sync += [self.index",
+            "with m.If(1):\n                    m.d.sync += [self.index",
+        ),
+        Bug(
+            "o.bad_only_at_end",
+            "o.payload.end.eq(left == 0)]",
+            "o.payload.end.eq(left == 0), o.payload.bad.eq(left == 1)]",
+        ),
     )
 
     def block(self) -> Any:
@@ -125,16 +137,24 @@ class SubscribeSpec(_Right):
     where it is, `i` is ready until a message has come. `granted`: who asks gets the right, and `taken`: what comes is taken,
     within some cycles in which the user has it not."""
 
-    quick, deep = 24, 40
+    quick, deep = 18, 28
     bugs = (
         Bug("kept", "m.d.sync += grant.eq(~rel)", "m.d.sync += grant.eq(~rel & ~wanted)"),
         Bug("mine", "with m.Elif(req & ~moving & ~begins):", "with m.Elif(req & ~begins):"),
         Bug("whole", "self.length.eq(at)", "self.length.eq(octets)"),
         Bug("bad", "with m.If(~i.payload.bad):", "with m.If(1):"),
-        Bug("new", "& ~self.grant):\n            m.d.sync += self.recv.eq(0)", "& ~self.grant):\n            pass"),
+        Bug(
+            "new",
+            "& ~self.grant):\n            m.d.sync += self.recv.eq(0)",
+            "& ~self.grant):\n            pass",
+        ),
         Bug("room", "self.room.eq(self.enable & ~full)", "self.room.eq(self.enable)"),
         Bug("taken", "~(before & req)", "~req"),
-        Bug("granted", "with m.Elif(req & ~moving & ~begins):", "with m.Elif(req & ~moving & wanted & ~begins):"),
+        Bug(
+            "granted",
+            "with m.Elif(req & ~moving & ~begins):",
+            "with m.Elif(req & ~moving & wanted & ~begins):",
+        ),
     )
 
     def block(self) -> Any:

@@ -6,13 +6,14 @@ however they came about, for as many lists, leases and sweeps as fit the cycles 
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import Any
 
 from amaranth.hdl import Assert, Assume, C, Cat, Const, Cover, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from gateware.formal import Bug, Spec, assume_steady
+from gateware.formal import Bug, Spec
 from roslet.gateware.meta import ADDRESSES
 from roslet.gateware.rtps import discovery, ports, tables
 from roslet.gateware.rtps.parameters import READ
@@ -29,15 +30,15 @@ OWN = OwnMap(
 IDS = 2
 """Bits in which prefixes differ, and entity ids."""
 LEASE = 2
-"""Bits of a lease."""
+"""Bits of a lease, in seconds."""
 LIST = 33
-"""Cycles of a list, at most: an endpoint whose id each place has, as have other participants' or those of the other kind."""
+"""Cycles of a list, at most."""
 SWEEP = 20
-"""Cycles of a sweep, at most: all are removed."""
+"""Cycles of a sweep, at most: of one that removes everybody."""
 
 
 class CutParameters(wiring.Component):
-    """`Parameters`, whose outputs are inputs of the proof: it says anything that its own proof (`ParametersSpec`) leaves it."""
+    """`Parameters`, whose outputs are inputs of the proof: it says anything that its own proof, `ParametersSpec`, leaves."""
 
     def __init__(self, peers: PeerMap, own: OwnMap, judge_domain: bool) -> None:
         super().__init__(
@@ -132,13 +133,26 @@ LOADS = "m.d.sync += [addressed.eq(step), before.eq(addressed)]"
 
 
 class DiscoverySpec(Spec):
-    """TODO"""
+    """One list, one sweep of leases, or both, from any tables on. Lists, and who is said to be known, are as `Parameters`,
+    `Submessages` and `Walker` give them by their own proofs, and a sweep is over within a second.
+
+    Of participants: `earned`, a slot is given for an announcement only, to one only, and is the first that was free;
+    `words`, and nothing is written over what is somebody's but by them, nor over an endpoint of another. `greeted`, who is
+    new is said. `entered`: who announces itself has a slot then, unless all have somebody, or another came in this datagram.
+    `full`: that is said only where it is so. `evicted`: a slot is lost by a farewell or a lease that has expired, and by
+    nothing else; `left`, `expires`: and by these it is. `lease`: that is the one announced last.
+
+    Of endpoints: `matched`, one that agrees has a place then, unless none is free; `right`, it is the first free one, which
+    has its id, its participant and what is ours; `due`, and something is sent to it. `unmatched`: one that agrees no more,
+    or is disposed, has none. `lost`: a place is lost by these, or with its participant. `single`: none has two.
+    `of_somebody`: the participant of each is there, whenever no list and no sweep is under way.
+    """
 
     module = discovery
-    quick, deep = 28, 46
+    quick, deep = 26, 42
     once = True
-    constants = {"Parameters": CutParameters}
-    scale = (
+    constants = MappingProxyType({"Parameters": CutParameters})
+    scale: tuple[tuple[str, str], ...] = (
         (
             LOADS,
             LOADS
@@ -151,8 +165,8 @@ class DiscoverySpec(Spec):
     bugs: tuple[Bug, ...] = (
         Bug(
             "single",
-            'with m.Elif(same.any()):\n',
-            'with m.Elif(same.any()):\n                m.d.sync += found.eq(found & self._places.full)\n',
+            "with m.Elif(same.any()):\n",
+            "with m.Elif(same.any()):\n                m.d.sync += found.eq(found & self._places.full)\n",
         ),
         Bug(
             "of_somebody",
@@ -162,7 +176,11 @@ class DiscoverySpec(Spec):
         Bug("evicted", "with m.If(left != 0):", "with m.If(left[1:] != 0):"),
         Bug("expires", "with m.If(left != 0):", "with m.If(1):"),
         Bug("lease", "Mux(before >= tables.LEASE, lease", "Mux(before > tables.LEASE, lease"),
-        Bug("left", 'm.If(meta.known):\n                m.next = "REMOVE"', "m.If(meta.known):\n                pass"),
+        Bug(
+            "left",
+            'm.If(meta.known):\n                m.next = "REMOVE"',
+            "m.If(meta.known):\n                pass",
+        ),
         Bug("earned", "with m.Elif(read.refused):", "with m.Elif(0):"),
         Bug("entered", "with m.Elif(~meta.known & arrived):", "with m.Elif(~meta.known & heard.any()):"),
         Bug("greeted", "self.greet.eq(1)", "self.greet.eq(read.user)"),
@@ -245,9 +263,7 @@ class DiscoverySpec(Spec):
             memory.sender.eq(Mux(begins, self.free(IDS, "its_prefix"), sender)),
             memory.entity.eq(Mux(begins, self.free(IDS, "its_entity"), entity)),
         ]
-        self.is_sender = [
-            dut.alive[n] & (prefix == memory.sender) for n, prefix in enumerate(memory.prefix)
-        ]
+        self.is_sender = [dut.alive[n] & (prefix == memory.sender) for n, prefix in enumerate(memory.prefix)]
         held = Signal()
         m.d.sync += held.eq(dut.idle & dut.hold)
         m.d.comb += [
@@ -267,7 +283,10 @@ class DiscoverySpec(Spec):
             third, ended = Signal(), Signal()
             m.d.sync += [third.eq(self.second), ended.eq(ended | self.cut.proceed | (held & ~dut.hold))]
             m.d.comb += [
-                Assume(~self.second | dut.tick | (i.valid & i.payload.end & ~self.cut.done & ~self.cut.takes), "begins"),
+                Assume(
+                    ~self.second | dut.tick | (i.valid & i.payload.end & ~self.cut.done & ~self.cut.takes),
+                    "begins",
+                ),
                 Assume(~third | dut.hold & dut.idle | self.cut.done, "begins"),
                 Assume(self.second | ~dut.tick, "once"),
                 Assume(~ended | ~i.valid, "once"),
@@ -285,7 +304,7 @@ class DiscoverySpec(Spec):
 
     def meant(self) -> None:
         """What the list that is done says."""
-        dut, cut, read, meta = self.dut, self.cut, self.cut.read, self.dut.i.meta
+        cut, read, meta = self.cut, self.cut.read, self.dut.i.meta
         of_participant = cut.done & (meta.kind == ports.PARTICIPANTS)
         of_endpoint = cut.done & (meta.kind != ports.PARTICIPANTS)
         self.leaving = of_participant & meta.gone & meta.known
@@ -298,9 +317,7 @@ class DiscoverySpec(Spec):
             to_reader = (read.reliable | C(not reader.reliable)) & (
                 read.durability >= C(reader.transient_local)
             )
-            to_writer = (~read.reliable | C(writer.reliable)) & (
-                read.durability <= C(writer.transient_local)
-            )
+            to_writer = (~read.reliable | C(writer.reliable)) & (read.durability <= C(writer.transient_local))
             fits.append(Mux(is_writer, to_reader, to_writer))
             both.append(read.reliable & Mux(is_writer, C(reader.reliable), C(writer.reliable)))
         self.local = lowest(cut.same)
@@ -347,7 +364,10 @@ class DiscoverySpec(Spec):
                 m.d.sync += lively.eq(1)
             with m.If(self.first):
                 m.d.sync += [lively.eq(dut.any_heard[n])]
-                m.d.sync += [silent.eq(self.free(LEASE + 2, f"silent{n}")), lease.eq(self.free(LEASE + 2, f"lease{n}"))]
+                m.d.sync += [
+                    silent.eq(self.free(LEASE + 2, f"silent{n}")),
+                    lease.eq(self.free(LEASE + 2, f"lease{n}")),
+                ]
 
     def rules(self, m: Module) -> None:
         """What the tables keep."""
@@ -359,8 +379,7 @@ class DiscoverySpec(Spec):
                 same &= self.writer_of[a] == self.writer_of[b]
                 single &= ~(dut.matched[a] & dut.matched[b] & same)
         of_somebody = Cat(
-            ~dut.matched[n]
-            | ((slot_of[n] < PEERS.participants) & dut.alive.bit_select(slot_of[n][:1], 1))
+            ~dut.matched[n] | ((slot_of[n] < PEERS.participants) & dut.alive.bit_select(slot_of[n][:1], 1))
             for n in range(PEERS.endpoints)
         ).all()
         settled = ~self.cut.done & ~dut.hold
@@ -385,10 +404,7 @@ class DiscoverySpec(Spec):
         self.full, self.new = full, new | self.rose
         m.d.comb += [
             Assert(
-                ~(cut.proceed & self.announcing)
-                | Cat(self.is_sender).any()
-                | full
-                | (arrived & ~meta.known),
+                ~(cut.proceed & self.announcing) | Cat(self.is_sender).any() | full | (arrived & ~meta.known),
                 "entered",
             ),
             Assert(self.rose.any() == greeted, "greeted"),
@@ -402,15 +418,12 @@ class DiscoverySpec(Spec):
             m.d.comb += [
                 Assert(~self.fell[n] | (self.leaving & here) | (dut.hold & self.expired[n]), "evicted"),
                 Assert(~(cut.proceed & self.leaving & here) | ~dut.alive[n], "left"),
-                Assert(
-                    ~self.rose[n] | (self.announcing & ~meta.known & self.were[:n].all()), "earned"
-                ),
+                Assert(~self.rose[n] | (self.announcing & ~meta.known & self.were[:n].all()), "earned"),
                 Assert(~self.rose[n] | (greeted_slot == n), "greeted"),
             ]
 
     def endpoints(self, m: Module) -> None:
         dut, cut, meta, memory = self.dut, self.cut, self.dut.i.meta, self.memory
-        is_writer = meta.kind == ports.PUBLICATIONS
         its = Cat(its & there for its, there in zip(self.is_its, dut.matched, strict=True))
         due, proxy = Signal(), Signal.like(dut.due.proxy)
         m.d.sync += [due.eq(dut.due.en), proxy.eq(dut.due.proxy)]
@@ -419,7 +432,11 @@ class DiscoverySpec(Spec):
             Assert(~(cut.proceed & self.ending) | ~its.any(), "unmatched"),
             Assert(
                 ~dut.drop_full
-                | Mux(cut.done & self.matching, dut.matched.all() & ~its.any(), self.announcing & dut.alive.all()),
+                | Mux(
+                    cut.done & self.matching,
+                    dut.matched.all() & ~its.any(),
+                    self.announcing & dut.alive.all(),
+                ),
                 "full",
             ),
             Cover(self.rose_place.any(), "matched"),
@@ -461,9 +478,7 @@ class DiscoverySpec(Spec):
             ]
         for n in range(PEERS.endpoints):
             here = write.en & (write.addr[3:] == PEERS.endpoint(Const(n, PEERS.endpoint_bits), 0)[3:])
-            m.d.comb += Assert(
-                ~here | (self.matching & (~dut.matched[n] | self.is_its[n])), "words"
-            )
+            m.d.comb += Assert(~here | (self.matching & (~dut.matched[n] | self.is_its[n])), "words")
 
 
 class ManyListsSpec(DiscoverySpec):
@@ -485,10 +500,10 @@ class ManyListsSpec(DiscoverySpec):
 
 
 class BoundsSpec(DiscoverySpec):
-    """Whatever the memory has: `proceeds`, a list that is done is dealt with within `LIST` cycles, and `swept`, the walker is
-    held no longer than `SWEEP` cycles."""
+    """Whatever the memory has, and however many lists come. `proceeds`: a list that is done is dealt with within `LIST`
+    cycles, and `swept`: the walker is held no longer than `SWEEP` cycles."""
 
-    quick, deep = 50, 90
+    quick, deep = 40, 80
     bugs = (
         Bug("proceeds", "with m.If(step[:4] == 15):", "with m.If(step[:4] == 16):"),
         Bug("swept", "with m.If(slot == peers.participants):", "with m.If(slot == 255):"),
@@ -519,4 +534,4 @@ class BoundsSpec(DiscoverySpec):
         ]
 
 
-SPECS: tuple[type[Spec], ...] = (DiscoverySpec, BoundsSpec)
+SPECS: tuple[type[Spec], ...] = (DiscoverySpec, ManyListsSpec, BoundsSpec)

@@ -27,12 +27,24 @@ class ReceiverSpec(Spec):
     module = slip
     quick, deep = 12, 20
     bugs = (
-        Bug("o.bad_only_at_end", "o.payload.data.eq(octet)", "o.payload.data.eq(octet), o.payload.bad.eq(count == 1)"),
-        Bug("steady", "m.d.comb += [o.valid.eq(i.valid), i.ready.eq(o.ready)]", "m.d.comb += [o.valid.eq(i.valid & ~o.ready), i.ready.eq(o.ready)]"),
+        Bug(
+            "o.bad_only_at_end",
+            "o.payload.data.eq(octet)",
+            "o.payload.data.eq(octet), o.payload.bad.eq(count == 1)",
+        ),
+        Bug(
+            "steady",
+            "m.d.comb += [o.valid.eq(i.valid), i.ready.eq(o.ready)]",
+            "m.d.comb += [o.valid.eq(i.valid & ~o.ready), i.ready.eq(o.ready)]",
+        ),
         Bug("packet", "with m.If(moved & is_end):", "with m.If(moved & (octet[:7] == slip.END & 127)):"),
         Bug("octet", "Mux(octet[0], slip.ESC, slip.END)", "Mux(octet[1], slip.ESC, slip.END)"),
         Bug("reason", "m.d.comb += reason.eq(moved)", "m.d.comb += reason.eq(moved & begun)"),
-        Bug("taken", 'm.d.comb += i.ready.eq(1)\n                    with m.If(moved):\n                        m.next = "ESCAPED"', 'm.d.comb += i.ready.eq(begun)\n                    with m.If(moved):\n                        m.next = "ESCAPED"'),
+        Bug(
+            "taken",
+            "with m.Elif(is_escape):\n                    m.d.comb += i.ready.eq(1)",
+            "with m.Elif(is_escape):\n                    m.d.comb += i.ready.eq(begun)",
+        ),
     )
 
     def block(self) -> Any:
@@ -109,10 +121,10 @@ class _Line(wiring.Component):
 class LineSpec(Spec):
     """`good`: nothing ends badly. `octet`: of the packets that ended well, the nth octet of the kth that comes out was the
     nth of the kth that went in, and `length`: they are as long. Nothing is `dropped` but what is too long for the sender.
-    `on`: whenever the line and the receiver's user are ready, within some cycles there is something at `o`, or nothing left."""
+    `on`: within some cycles in which the line and who takes packets are ready there is something at `o`, or nothing left."""
 
     module = slip
-    quick, deep = 26, 40
+    quick, deep = 17, 23
     bugs = (
         Bug(
             "o.bad_only_at_end",
@@ -165,7 +177,7 @@ class LineSpec(Spec):
 
 class GroupFilterSpec(Spec):
     """With one group, which may be joined, and stays so. `passes`: octets do as they come, and `end`: so do ends, of packets
-    with a whole header, unless the destination is a group's that is neither joined nor 224.0.0.1; `told`: that is counted."""
+    with a whole header, unless the destination is a group that is neither joined nor 224.0.0.1; `told`: that is counted."""
 
     module = slip_stack
     quick, deep = 23, 46
@@ -194,7 +206,9 @@ class GroupFilterSpec(Spec):
             with m.If((count >= 16) & (count < 20)):  # RFC 791, 3.1
                 m.d.sync += destination.eq(Cat(destination[8:], i.payload.data))
         is_group = destination[4:8] == 0xE
-        wanted = ~is_group | (destination == 0x010000E0) | (group.valid & (destination == Value.cast(group.ip)))
+        wanted = (
+            ~is_group | (destination == 0x010000E0) | (group.valid & (destination == Value.cast(group.ip)))
+        )
         same = (o.payload.data == i.payload.data) & (o.payload.end == i.payload.end)
         at_end = i.valid & i.payload.end
         counts = at_end & (count >= 20)

@@ -9,7 +9,6 @@ from typing import Any
 
 from amaranth.hdl import Array, Assert, Assume, C, Cat, Cover, Module, Mux, Signal, Value
 
-
 from gateware.formal import Bug, Spec
 from gateware.proofs.rtps import waits
 from roslet.gateware.typed import deserializer, serializer
@@ -104,8 +103,8 @@ class _Serializer(Spec):
 
     module = serializer
     body: Body
-    quick, deep = 24, 40
-    bound, gap = 12, 4
+    quick, deep = 13, 24
+    bound, gap = 7, 2
     shared_bugs = (
         Bug(
             "o.bad_only_at_end",
@@ -171,6 +170,7 @@ class LabelSerializerSpec(_Serializer):
 class ListSerializerSpec(_Serializer):
     __doc__ = _Serializer.__doc__
     body = List()
+    quick = 15
     bugs = (
         *_Serializer.shared_bugs,
         Bug("o.steady", "free.eq(~full | o.ready)]", "free.eq(1)]"),
@@ -186,13 +186,15 @@ class _Deserializer(Spec):
     message that the user leaves."""
 
     module = deserializer
-    quick, deep = 16, 26
+    quick, deep = 13, 20
     words = 4
     bound = 3
     bugs = (
         Bug("whole", "piece.lane + piece.octets - 1 - octet", "piece.lane + octet"),
         Bug("once", "with m.If(good & ~short):", "with m.If(~short):"),
-        Bug("steady", "m.d.comb += self.o.valid.eq(1)", "m.d.comb += [self.o.valid.eq(1), store.eq(i.valid)]"),
+        Bug(
+            "steady", "m.d.comb += self.o.valid.eq(1)", "m.d.comb += [self.o.valid.eq(1), store.eq(i.valid)]"
+        ),
         Bug("kept", "(i.payload.padding > unused)", "(i.payload.padding >= unused)"),
         Bug("reason", "(count > bound)", "(count >= bound)"),
         Bug(
@@ -268,7 +270,6 @@ class LabelDeserializerSpec(_Deserializer):
 
     def judge(self, octets: list[Value], size: Value, big: Value, given: Any) -> tuple[Value, ...]:
         many = ordered(octets[:4], big)  # with the NUL
-        number = Signal(8)
         at = many[:4] + 4
         at = (at + at[0])[:5]
         over, empty, begun = many > TEXT + 1, many == 0, size >= 4
@@ -288,7 +289,7 @@ class ListDeserializerSpec(_Deserializer):
     __doc__ = _Deserializer.__doc__
     plan = List.plan
     words = 6
-    quick = 20
+    quick = 14
 
     def judge(self, octets: list[Value], size: Value, big: Value, given: Any) -> tuple[Value, ...]:
         many = ordered(octets[:4], big)
