@@ -124,7 +124,7 @@ class LineSpec(Spec):
     `on`: within some cycles in which the line and who takes packets are ready there is something at `o`, or nothing left."""
 
     module = slip
-    quick, deep = 17, 23
+    quick, deep = 16, 21
     bugs = (
         Bug(
             "o.bad_only_at_end",

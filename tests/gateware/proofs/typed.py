@@ -186,7 +186,7 @@ class _Deserializer(Spec):
     message that the user leaves."""
 
     module = deserializer
-    quick, deep = 13, 20
+    quick, deep = 12, 18
     words = 4
     bound = 3
     bugs = (
@@ -289,7 +289,7 @@ class ListDeserializerSpec(_Deserializer):
     __doc__ = _Deserializer.__doc__
     plan = List.plan
     words = 6
-    quick = 14
+    quick = 13
 
     def judge(self, octets: list[Value], size: Value, big: Value, given: Any) -> tuple[Value, ...]:
         many = ordered(octets[:4], big)
