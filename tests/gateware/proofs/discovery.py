@@ -1,7 +1,8 @@
 """Discovery's tables: nobody has two places or another's, nobody alive goes for somebody new, nobody stays who is gone.
 
-Two participants, three endpoints, ids and prefixes of two bits, leases of up to 3 s. In the first cycle the tables become any that keep the rules below: so what is said holds
-however they came about.
+Two participants, three endpoints, ids and prefixes of two bits, leases of up to 3 s. In the first cycle the tables become
+any that keep the rules below, so what is said holds however they came about; the block's other registers begin as after a
+reset, but for who was heard and which endpoint was looked at last.
 """
 
 from __future__ import annotations
@@ -355,8 +356,8 @@ class ParticipantsSpec(_Tables):
     announces itself has a slot then, unless all have somebody, or another came in this datagram. `full`: that is said only
     where it is so. `evicted`: a slot is lost by a farewell or a lease that has expired, and by nothing else; `left`,
     `expires`: and by these it is. `lease`: that is the one announced last. `lost`: an endpoint is
-    unmatched only where its participant goes, and none is matched. `of_somebody`: the participant of each is there, but while
-    a list or a sweep is under way.
+    unmatched only where its participant goes, and none is matched. `of_somebody`: the participant of each is there, but
+    while a list or a sweep is under way.
 
     Of the four proxies of a participant one is made here.
     """
