@@ -13,7 +13,9 @@ SIZE = 5
 """Octets of a message, at most: two words, of which the second has one."""
 WORDS = 2
 SENT, GRANTED = 12, 8
+"""Cycles until what is due goes, and the right is given, at most: of the publishing side."""
 TAKEN, MOVED = SIZE + 4, SIZE + 4
+"""And of the subscribing side: until a word is taken, and the right is given."""
 
 
 class _Right(Spec):

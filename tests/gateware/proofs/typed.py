@@ -99,7 +99,7 @@ class _Serializer(Spec):
     """Messages stand until they are taken, and then others do. Of the kth of them, any: `octet`, any octet of its words is
     that of the kth message, also behind its end; `length`: it has as many, and says how many are too many. `bound`: it ends
     badly if, and only if, a length in it is over its bound, and that is counted. `taken`: it is, within some cycles in which
-    the stream is ready, and so long only there is `no_gap`."""
+    the stream is ready. `no_gap`: while there is something to be sent, `o` is empty for a few cycles at most."""
 
     module = serializer
     body: Body
