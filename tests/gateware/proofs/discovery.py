@@ -525,11 +525,14 @@ class ManyListsSpec(_Tables):
 
     def judge(self, m: Module) -> None:
         dut, meta = self.dut, self.dut.i.meta
+        departed = Signal()
+        m.d.sync += departed.eq(departed | self.fell.any())
         m.d.comb += [
             Assume(meta.kind == ports.PARTICIPANTS, "participants"),
             Assume(~dut.tick, "no lease expires"),
             Assume(~self.second | self.distinct, "distinct"),
             Assert(self.first | self.second | self.distinct, "distinct"),
+            Cover(self.rose.any() & departed, "again"),
         ]
 
 

@@ -151,7 +151,7 @@ class _Serializer(Spec):
             Assert(~(mine & o.payload.end) | (o.payload.bad == ~legal), "bound"),
             Assert(dut.drop_bound == (i.valid & i.ready & ~body.legal(i.payload)), "bound"),
             Assert(idle <= self.gap, "no_gap"),
-            Cover(given.ended & (out == 1), "two"),
+            Cover(given.transfer & (out == 1), "another"),
             Cover(given.ended & o.payload.bad, "over"),
         ]
         waits(m, i, self.bound, o.ready, "taken")
