@@ -208,7 +208,7 @@ class SubmessagesSpec(Spec):
         Bug(
             "discovery.steady",
             "m.d.comb += self.discovery.stream.valid.eq(i.valid)",
-            "m.d.comb += self.discovery.stream.valid.eq(i.valid & ~sn[0])",
+            "m.d.comb += self.discovery.stream.valid.eq(i.valid & ~self.peers.data[0])",
         ),
         Bug(
             "discovery.bad_only_at_end",
