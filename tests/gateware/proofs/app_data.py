@@ -50,7 +50,7 @@ class PublishSpec(_Right):
     and each reason once. `long`: one that is too long never goes. `granted`: who asks gets the right, and `sent`: what is
     due goes, within some cycles in which the stream, or the user, is ready."""
 
-    quick, deep = 22, 36
+    quick, deep = 24, 36
     bugs = (
         Bug("kept", "m.d.sync += grant.eq(~rel)", "m.d.sync += grant.eq(~rel & ~wanted)"),
         Bug("mine", "with m.Elif(req & ~moving & ~begins):", "with m.Elif(req & ~begins):"),
@@ -139,7 +139,7 @@ class SubscribeSpec(_Right):
     where it is, `i` is ready until a message has come. `granted`: who asks gets the right, and `taken`: what comes is taken,
     within some cycles in which the user has it not."""
 
-    quick, deep = 16, 26
+    quick, deep = 20, 26
     bugs = (
         Bug("kept", "m.d.sync += grant.eq(~rel)", "m.d.sync += grant.eq(~rel & ~wanted)"),
         Bug("mine", "with m.Elif(req & ~moving & ~begins):", "with m.Elif(req & ~begins):"),
