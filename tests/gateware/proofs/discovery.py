@@ -456,8 +456,9 @@ class EndpointsSpec(_Tables):
     bugs = (
         Bug(
             "single",
-            "with m.Elif(same.any()):\n",
-            "with m.Elif(same.any()):\n                m.d.sync += found.eq(found & self._places.full)\n",
+            "with m.If(~found):\n                    m.d.sync += endpoint.eq(self._places.free)",
+            "with m.If(~found | ~self._places.full):\n"
+            "                    m.d.sync += [endpoint.eq(self._places.free), found.eq(0)]",
         ),
         Bug("right", "is_writer, reliable),", "is_writer, read.reliable),"),
         Bug("due", "len(endpoint)), C(1, 1))", "len(endpoint)), C(0, 1))"),

@@ -18,7 +18,7 @@ END, ESC, ESC_END, ESC_ESC = 0xC0, 0xDB, 0xDC, 0xDD
 LONGEST = 2
 
 
-class ReceiverSpec(Spec):
+class SlipReceiverSpec(Spec):
     """Octets of any kind, of which some are bad, and may take the place of others that were not taken. `packet`: at an END
     there is a good end if, and only if, since the last one there was nothing wrong, and as many octets as a packet may
     have. `octet`: the nth of them was the nth. `reason`: of anything wrong one is counted, once for a packet. `steady`, as
@@ -221,4 +221,4 @@ class GroupFilterSpec(Spec):
         ]
 
 
-SPECS: tuple[type[Spec], ...] = (ReceiverSpec, LineSpec, GroupFilterSpec)
+SPECS: tuple[type[Spec], ...] = (SlipReceiverSpec, LineSpec, GroupFilterSpec)
