@@ -6,7 +6,21 @@ import pytest
 
 from gateware import formal
 from gateware.formal import Spec
-from gateware.proofs import arbiter, arp_cache, checksum, fifo, header, mac, raw_udp, reassembly, rtps
+from gateware.proofs import (
+    app_data,
+    arbiter,
+    arp_cache,
+    checksum,
+    discovery,
+    fifo,
+    header,
+    mac,
+    raw_udp,
+    reassembly,
+    rtps,
+    slip,
+    typed,
+)
 
 SPECS = (
     *arbiter.SPECS,
@@ -18,6 +32,10 @@ SPECS = (
     *raw_udp.SPECS,
     *reassembly.SPECS,
     *rtps.SPECS,
+    *discovery.SPECS,
+    *typed.SPECS,
+    *app_data.SPECS,
+    *slip.SPECS,
 )
 
 

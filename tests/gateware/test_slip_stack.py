@@ -10,11 +10,11 @@ import sliplib
 from scapy.layers.inet import ICMP, IP, UDP, fragment
 from scapy.packet import Raw
 
-from gateware.frames import Bad, Bench
+from gateware.frames import STALLS, Bad, Bench
 from gateware.internet import fields, octets
 from gateware.network import configure
 from roslet.gateware.slip import SlipLink
-from roslet.gateware.slip_stack import SlipStack
+from roslet.gateware.slip_stack import GroupFilter, SlipStack
 
 HERE, THERE, ELSEWHERE = "192.168.1.100", "192.168.1.10", "10.9.8.7"
 GROUP, OTHER_GROUP = "239.255.0.1", "239.255.0.2"
@@ -251,3 +251,14 @@ def test_bounds_are_checked() -> None:
         SlipStack(mtu=1501)
     with pytest.raises(ValueError, match="1500 items do not hold a packet of 1500 octets"):
         SlipLink(8, tx_depth=1500)
+
+
+@pytest.mark.parametrize("stalls", STALLS)
+def test_an_empty_packet_is_not_taken_for_one_of_the_group_before_it(stalls: int) -> None:
+    bench = Bench(GroupFilter(1), stalls)
+    received = bench.receive("o")
+    bench.count("drop_group")
+    bench.send("i", [udp(b"not for us", dst=OTHER_GROUP), b"", udp(b"for us")])
+    bench.run()
+    assert [(frame, type(frame)) for frame, _ in received[1:]] == [(b"", bytes), (udp(b"for us"), bytes)]
+    assert bench.counts["drop_group"] == 1

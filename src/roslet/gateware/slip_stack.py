@@ -45,20 +45,17 @@ class GroupFilter(wiring.Component):
         octet = i.payload.data
         behind = _DESTINATION + 4
         at = Signal(range(behind + 1))
-        moved, comparing = Signal(), Signal()
+        moved, comparing, to_group = Signal(), Signal(), Signal()
         m.d.comb += [
             moved.eq(i.valid & i.ready),
             comparing.eq(moved & ~i.payload.end & (at[2:] == _DESTINATION // 4)),
         ]
         with m.If(moved & i.payload.end):
-            m.d.sync += at.eq(0)
+            m.d.sync += [at.eq(0), to_group.eq(0)]
         with m.Elif(moved & (at != behind)):
             m.d.sync += at.eq(at + 1)
 
-        to_group = Signal()
-        with m.If(at == 0):
-            m.d.sync += to_group.eq(0)
-        with m.Elif(comparing & (at == _DESTINATION)):
+        with m.If(comparing & (at == _DESTINATION)):
             m.d.sync += to_group.eq(multicast.is_multicast(octet))
         wanted: list[tuple[Any, Any]] = [(1, list(multicast.ALL_HOSTS))]
         for group in self.groups:

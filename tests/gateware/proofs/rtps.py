@@ -99,7 +99,7 @@ class WalkerSpec(Spec):
     """`length`: a body has no more words than its header says, and at a good end as many. `data`: they are the message's.
     `good`: a good end is given only of a datagram that is known to be good, and whose octets are all there. `heard`:
     only then is anybody heard. `taken`: whatever comes is taken within a few cycles, and so is the end of a datagram,
-    wherever it comes. `idle`: then the walker is.
+    wherever it comes. `idle`: then the walker is, and stays so while it is held; and never within a body.
 
     Prefixes have one word here. The memories hold anything, in each cycle something else.
     """
@@ -151,6 +151,8 @@ class WalkerSpec(Spec):
         with m.If(given.ended):
             m.d.sync += count.eq(0)
         length = Mux(header[8], header[16:32], header[24:32] | header[16:24] << 8)
+        held = Signal()
+        m.d.sync += held.eq(dut.idle & dut.hold)
         needs = (length + 3) >> 2
         good = o.valid & o.payload.end & ~o.payload.bad
         missing = i.payload.end & (i.payload.padding > (-length)[:2])
@@ -162,7 +164,8 @@ class WalkerSpec(Spec):
             Assert(~word | (rules.transfer & (o.payload.data == i.payload.data)), "data"),
             Assert(~good | (dut.known & dut.good & ~((length != 0) & missing)), "good"),
             Assert(~dut.heard | (given.ended & ~o.payload.bad & dut.o.meta.known), "heard"),
-            Assert(~ended | dut.idle, "idle"),
+            Assert(~(ended | held) | dut.idle, "idle"),
+            Assert(~dut.idle | ~(o.valid | given.within), "idle"),
             Cover(given.ended & ~o.payload.bad & (count == 2), "body"),
             Cover(given.ended & o.payload.bad & (count == 1), "cut"),
         ]
@@ -183,7 +186,8 @@ def verdict_assumed(m: Module, dut: Any) -> None:
 
 
 class SubmessagesSpec(Spec):
-    """`user`: a message of the user's ends well only where the body does, and `word`: is made of its words. `kept`: but
+    """`user`: a message of the user's ends well only where the body does, and `word`: is made of its words. `over`: a
+    body's end is not taken before discovery has taken its. `kept`: but
     for the scratch area, something is written only at a good end: nothing is kept of a datagram that ends badly. `taken`:
     what comes is taken within some cycles, of all but a GAP, which may take one for each bit."""
 
@@ -201,8 +205,28 @@ class SubmessagesSpec(Spec):
             "self.user.meta.reader.eq(info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8])",
             "self.user.meta.reader.eq(self.peers.data)",
         ),
+        Bug(
+            "discovery.steady",
+            "m.d.comb += self.discovery.stream.valid.eq(i.valid)",
+            "m.d.comb += self.discovery.stream.valid.eq(i.valid & ~self.peers.data[0])",
+        ),
+        Bug(
+            "discovery.bad_only_at_end",
+            "self.discovery.stream.payload.eq(i.payload)",
+            "self.discovery.stream.payload.eq(i.payload), self.discovery.stream.payload.bad.eq(1)",
+        ),
+        Bug(
+            "discovery.meta_steady",
+            "self.discovery.meta.gone.eq(gone)",
+            "self.discovery.meta.gone.eq(self.peers.data[0])",
+        ),
         Bug("user", "user.payload.bad.eq(i.payload.bad)", "user.payload.bad.eq(i.payload.bad & (word == 0))"),
         Bug("word", "self.user.stream.payload.data.eq(word)", "self.user.stream.payload.data.eq(number)"),
+        Bug(
+            "over",
+            "with m.If(~i.payload.end):\n                    m.d.comb += i.ready.eq(self.discovery.stream.ready)",
+            "with m.If(1):\n                    m.d.comb += i.ready.eq(self.discovery.stream.ready)",
+        ),
         Bug(
             "kept",
             '                with m.If(good):\n                    m.next = "WRITE LOW"\n',
@@ -220,8 +244,9 @@ class SubmessagesSpec(Spec):
 
     def properties(self, m: Module) -> None:
         dut = self.dut
-        self.assume(m, "i")
+        rules = self.assume(m, "i")
         self.check(m, "user")
+        lists = self.check(m, "discovery")
         i, user = dut.i.stream, dut.user.stream
         peers = PeerMap(1, 1)
         ended = i.valid & i.payload.end
@@ -232,6 +257,7 @@ class SubmessagesSpec(Spec):
             Assume(dut.i.meta.id != GAP, "no GAP"),
             Assert(~good | (ended & ~i.payload.bad), "user"),
             Assert(~word | (i.valid & ~i.payload.end & (user.payload.data == i.payload.data)), "word"),
+            Assert(~rules.ended | ~(lists.within | dut.discovery.stream.valid), "over"),
             Assert(~dut.write.en | scratch | (ended & ~i.payload.bad), "kept"),
             Cover(dut.write.en & ~scratch, "written"),
         ]
@@ -241,7 +267,8 @@ class SubmessagesSpec(Spec):
 class ParametersSpec(Spec):
     """`done`: a list is read only at a good end, and if it is none or ended with its sentinel, behind whole values. `stays`:
     what is read of it is steady until it may proceed. `told`: of what ended well something is said. `kept`: nothing but
-    the scratch area is written. `taken`: what comes is taken within some cycles, but for the end of what is read."""
+    the scratch area is written. `quiet`: who deals with a list that is done has the memories for itself, and what was
+    written of it is there. `taken`: what comes is taken within some cycles, but for the end of what is read."""
 
     module = parameters
     quick, deep = 17, 26
@@ -259,6 +286,11 @@ class ParametersSpec(Spec):
             "kept",
             "keep(self._peers.scratch(at), word)",
             "keep(self._peers.participant(Const(0, 1), at), word)",
+        ),
+        Bug(
+            "quiet",
+            "[self.done.eq(~i.payload.bad), ",
+            "[self.done.eq(~i.payload.bad), self.own.addr.eq(little), ",
         ),
         Bug(
             "taken",
@@ -297,7 +329,11 @@ class ParametersSpec(Spec):
         good = i.valid & i.payload.end & ~i.payload.bad
         held, read, same = Signal(), Signal.like(dut.read.as_value()), Signal.like(dut.same)
         m.d.sync += [held.eq(dut.done & ~dut.proceed), read.eq(dut.read), same.eq(dut.same)]
+        wrote, addresses = Signal(), Cat(dut.peers.addr, dut.own.addr, dut.write.addr, dut.write.data)
+        m.d.sync += wrote.eq(dut.write.en)
         m.d.comb += [
+            Assert((i.valid & ~dut.done) | ~Cat(addresses, dut.write.en).any(), "quiet"),
+            Assert(~dut.done | ~wrote, "quiet"),
             Assert(~dut.done | (good & ((expected == beginning) | (expected == rest))), "done"),
             Assert(~held | (dut.done & (dut.read.as_value() == read) & (dut.same == same)), "stays"),
             Assert(~(rules.ended & good) | (dut.done ^ dut.drop_malformed), "told"),

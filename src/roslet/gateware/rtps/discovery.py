@@ -34,7 +34,7 @@ class Discovery(wiring.Component):
 
     - A participant that announces itself has the first free slot, with proxies of its discovery endpoints, from which all
       is wanted and to which all is sent. Its next announcements, in other datagrams, move it. It goes, and its endpoints
-      with it, when it says so or when nothing good was heard of it for its lease, and a second or two.
+      with it, when it says so or when nothing good was heard of it for its lease, and two or three seconds.
     - An endpoint whose topic and type are one of ours, and whose QoS agrees, gets a proxy; one that we know moves, or goes
       where it agrees no more. It goes when it is disposed. Our endpoints' QoS other than reliability and durability are the
       defaults.
