@@ -193,6 +193,7 @@ class CountSession(RosSession):
     DIVISOR = 8
     PUBLISHED = ("/count", "std_msgs/msg/UInt32")
     SUBSCRIBED = ("/preset", "std_msgs/msg/UInt32")
+    _turns = itertools.cycle((True, False, False, False))
 
     @classmethod
     def options(cls, factor: float) -> dict[str, float]:
@@ -214,6 +215,10 @@ class CountSession(RosSession):
         network = f"ros2://{DOMAIN}?slip={pty.path}&address={HOST}/{PREFIX}"
         self._tell(f"the line is {pty.path}: --network '{network}'", pty=pty.path, network=network)
         return station
+
+    def _ask(self) -> None:
+        if next(self._turns):
+            super()._ask()
 
     def _show(self, message: Any) -> None:
         self._tell(f"/count  {message.data}", received=message.data)
