@@ -3,7 +3,8 @@
     python benchmarks/gates.py [--only size,echo,latency,publish] [--messages N] [--designs TEXT] [--json]
 
 size     LUTs, flip-flops, block RAMs and MHz on ECP5, speed grade 6, routed: `Ros2Ether` with the manual's constants, and
-         `RosNode` with 1, 4 and 16 topics each way; and a small node on an iCE40 HX8K. --designs: those with TEXT
+         `RosNode` with 1, 4 and 16 topics each way; and on an iCE40 HX8K, mapped for area, the example serial-count, and a
+         node that only publishes a number. --designs: those with TEXT
 echo     the example typed-echo, pin to pin: from the last nibble of a Coordinate on `ping` to the first of the preamble of
          the one on `pong`, N times (1,000 unless told otherwise), each at any moment of an idle node
 latency  the manual's node with the user logic of topic-pub-sub: from `ros2_pub_app_data_rel` to the first nibble of the
@@ -40,6 +41,7 @@ from roslet.errors import RosletError
 from roslet.gateware.boards import lattice
 from roslet.gateware.boards.pinned import Pinned
 from roslet.gateware.config import Config
+from roslet.gateware.tops.links import Serial
 from roslet.gateware.tops.ros2_ether import Ros2Ether
 from roslet.gateware.tops.ros_node import Publish, RosNode, Subscribe
 from roslet.gateware.wires import expose
@@ -56,6 +58,7 @@ COORDINATE, STRING, BLOCK = "mros_comm_measure/msg/Coordinate", "std_msgs/msg/St
 BLOCK_TEXT = "uint8[64] data\n"
 BEST_EFFORT = Qos((qos.BEST_EFFORT, qos.DEFAULT_BLOCKING), history=(qos.KEEP_LAST, 1))
 CLOCK, PHY_CLOCK, NIBBLE = 100e6, 25e6, 4
+SERIAL_CLOCK = 25_000_000
 FACTOR = 50.0
 """Seconds of the wire in one of the design's own time: periods of the protocol are seconds of the wire."""
 CLOCKS = {"clk": CLOCK, "phy_rx_clk": PHY_CLOCK, "phy_tx_clk": PHY_CLOCK}
@@ -121,9 +124,17 @@ def designs() -> dict[str, Callable[[], tuple[lattice.Chip, Any]]]:
             Pinned(Ros2Ether(Config(ros2clk_hz=hz)), (*SETTINGS, *ROS_SETTINGS)),
         ),
         **{f"RosNode {topics}+{topics}": functools.partial(node, topics) for topics in (1, 4, 16)},
-        "one publisher of UInt32, one peer": lambda: (
+        "serial-count": lambda: (lattice.ICE40, example("serial_count")(SERIAL_CLOCK)),
+        "one publisher of UInt32, serial": lambda: (
             lattice.ICE40,
-            Talker("std_msgs/msg/UInt32", clk_hz=25e6, participants=1, endpoints=2, cache_width=1),
+            Talker(
+                "std_msgs/msg/UInt32",
+                clk_hz=SERIAL_CLOCK,
+                link=Serial(echo_data=None),
+                fragments=1,
+                participants=1,
+                endpoints=2,
+            ),
         ),
     }
 
@@ -136,12 +147,13 @@ def size(chosen: str) -> list[dict[str, Any]]:
             continue
         print(f"placing and routing {name}", file=sys.stderr, flush=True)
         chip, top = make()
-        goals = {clock: hz / 1e6 for clock, hz in CLOCKS.items()} | {"clk": chip.default_mhz}
+        goals = {clock: hz / 1e6 for clock, hz in CLOCKS.items() if clock in top.signature.members}
+        goals["clk"] = chip.default_mhz
+        small = chip is lattice.ICE40
         with tempfile.TemporaryDirectory() as folder:
             try:
-                rows.append(
-                    {"design": name, **lattice.build(chip, top, "design", pathlib.Path(folder), goals)}
-                )
+                found = lattice.build(chip, top, "design", pathlib.Path(folder), goals, small=small)
+                rows.append({"design": name, **found})
             except RosletError as error:
                 rows.append({"design": name, "device": chip.title, "failed": str(error).splitlines()[-1]})
     return rows

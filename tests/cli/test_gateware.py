@@ -109,6 +109,20 @@ def test_goals_follow_from_chip_and_phy(
 
 
 @pytest.mark.parametrize(
+    ("target", "chip", "clk"), [("ice40", lattice.ICE40, 25.0), ("ecp5", lattice.ECP5, 100.0)]
+)
+def test_an_example_with_a_serial_line_has_one_clock(
+    target: str, chip: Any, clk: float, run: Run, tmp_path: pathlib.Path, built: list[tuple[Any, ...]]
+) -> None:
+    words = ("serial-count", "--target", target, "--small", "--output", tmp_path)
+    outcome = run("gateware", "build", *words)
+    assert outcome.out.splitlines()[0] == "serial-count (serial) on some chip"
+    used, top, name, _, goals, how = built[0]
+    assert (used, name, goals, how["small"]) == (chip, "serial_count", {"clk": clk}, True)
+    assert set(top.signature.members) == {"clk", "rst_n", "uart_rx", "uart_tx", "led"}
+
+
+@pytest.mark.parametrize(
     ("words", "error"),
     [
         (
@@ -117,6 +131,12 @@ def test_goals_follow_from_chip_and_phy(
         ),
         (["--target", "arty-a7"], "takes an example with LEDs: udp-tx-rx"),
         (["udp-tx-rx", "--target", "arty-a7", "--phy", "gmii"], "the Arty A7 has a PHY with MII"),
+        (["serial-count", "--target", "arty-a7"], "takes an example with a PHY: udp-tx-rx"),
+        (["serial-count", "--target", "ecp5", "--phy", "gmii"], "has a serial line and no PHY"),
+        (
+            ["serial-count", "--target", "ecp5", "--frequency", "13.5"],
+            "with a clock of 1.35e+07 Hz a line has 964286 baud, not 1e+06",
+        ),
         (["udp-tx-rx", "--target", "arty-a7", "--frequency", "50"], "the Arty A7 has a clock of 100 MHz"),
     ],
 )

@@ -18,7 +18,7 @@ import roslet
 from roslet.engine.rtps import events
 from roslet.errors import Unreachable
 from roslet.io import slip
-from roslet.io.select import Reactor
+from roslet.io.select import READ, WRITE, Reactor
 from roslet.io.slip import SlipDomain
 from roslet.names import Ros2Network, SerialLine
 from roslet.wire.net.slip import Decoder, emit
@@ -206,6 +206,12 @@ def test_the_participant_announces_itself_to_the_group_and_hears_itself(end: End
         writer.write(b"\0\1\0\0hello", end.reactor.now())
         end.domain.flush()
     assert wait(lambda: any(isinstance(event, events.SampleReceived) for event in end.events))
+
+
+def test_what_the_loop_saw_before_another_thread_closed_the_line_is_nothing(end: End) -> None:
+    end.domain.close()
+    end.domain._ready(READ | WRITE)
+    assert end.warnings == []
 
 
 def test_a_line_that_nobody_reads_holds_a_bounded_backlog(end: End) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import pathlib
 import runpy
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
 TOP, ROS = "ethernet-udp", "ros2-ether"
 TARGETS = ("verilog", "ecp5", "ice40", "arty-a7")
+SERIAL = "serial"
+"""What is told of a design without a PHY."""
 PHY_MHZ = {"mii": 25.0, "gmii": 125.0}  # IEEE 802.3, 22.2.2.1 and 35.2.2.1
 SETTINGS = (
     "mac_addr",
@@ -72,9 +75,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         "frequency of each clock. The exit code is 1 where a clock is slower than it should be.\n\n"
         "DESIGN is ethernet-udp, the node of which user logic sends and receives UDP datagrams; ros2-ether, which is a\n"
         "ROS 2 node, too, with the module, ports, parameters and headers of the ROS2rapper manual; or an example with user\n"
-        "logic, as udp-tx-rx. Pins of ecp5 and ice40 are arbitrary; addresses and other settings of the first two come\n"
-        "there from a shift register, since no package has so many pins. For arty-a7 a Vivado project is written, which\n"
-        "nobody has run yet."
+        "logic, as udp-tx-rx, or serial-count, which has a serial line and fits an iCE40 HX8K with --small. Pins of ecp5\n"
+        "and ice40 are arbitrary; addresses and other settings of the first two come there from a shift register, since no\n"
+        "package has so many pins. For arty-a7 a Vivado project is written, which nobody has run yet."
     )
     build.add_argument(
         "design", nargs="?", default=TOP, metavar="DESIGN", help=f"{TOP} (default), {ROS} or an example"
@@ -131,6 +134,18 @@ def load(name: str) -> dict[str, Any]:
     return runpy.run_path(str(found[name]))
 
 
+def _example(name: str, hz: int, phy: str) -> Any:
+    """The design of an example, for a clock of `hz`. Raises CommandError."""
+    design = load(name)["Design"]
+    has_phy = "phy" in inspect.signature(design).parameters
+    if not has_phy and phy != "mii":
+        raise CommandError(f"{name} has a serial line and no PHY: --phy is not for it")
+    try:
+        return design(hz, phy=phy) if has_phy else design(hz)
+    except ValueError as error:
+        raise CommandError(str(error)) from None
+
+
 def run_build(arguments: argparse.Namespace) -> int:
     """`roslet gateware build`."""
     name, target = (arguments.top or arguments.design).replace("_", "-"), arguments.target
@@ -157,10 +172,14 @@ def run_build(arguments: argparse.Namespace) -> int:
     if name in (TOP, ROS):
         top: Any = (EthernetUdp if name == TOP else Ros2Ether)(config, arguments.phy)
     else:
-        top = load(name)["Design"](hz, phy=arguments.phy)
+        top = _example(name, hz, arguments.phy)
+    has_phy = "phy_rx_clk" in top.signature.members
+    if target == "arty-a7" and not has_phy:
+        raise CommandError("the Arty A7 takes an example with a PHY: udp-tx-rx")
     identifier, folder = name.replace("-", "_"), arguments.output
     folder.mkdir(parents=True, exist_ok=True)
-    result: dict[str, Any] = {"design": name, "target": target, "phy": arguments.phy}
+    link = arguments.phy if has_phy else SERIAL
+    result: dict[str, Any] = {"design": name, "target": target, "phy": link}
     if target == "verilog":
         from roslet.gateware.toolchain import write_verilog
 
@@ -182,8 +201,9 @@ def run_build(arguments: argparse.Namespace) -> int:
         if name in (TOP, ROS):
             top = Pinned(top, SETTINGS if name == TOP else (*SETTINGS, *ROS_SETTINGS))
             result["settings_flip_flops"] = top.bits
-        phy_mhz = PHY_MHZ[arguments.phy]
-        goals = {"clk": mhz, "phy_rx_clk": phy_mhz, "phy_tx_clk": phy_mhz}
+        goals = {"clk": mhz}
+        if has_phy:
+            goals |= dict.fromkeys(("phy_rx_clk", "phy_tx_clk"), PHY_MHZ[arguments.phy])
         tries = {"seed": arguments.seed, "seeds": arguments.seeds, "small": arguments.small}
         result.update(lattice.build(chip, top, identifier, folder, goals, **tries))
     _show(arguments, result)

@@ -6,18 +6,23 @@ from __future__ import annotations
 import itertools
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from roslet.cli.gateware_sim import HOST, HOST_MAC, PREFIX, Session
+from roslet.cli.gateware_sim import CLOCK, HOST, HOST_MAC, PREFIX, Session
 from roslet.engine.net.host import Host
+from roslet.engine.net.slip_host import SlipHost
 from roslet.engine.rtps import events
 from roslet.engine.rtps.participant import Participant
 from roslet.gen.runtime import message_class
 from roslet.names.ros2 import TOPIC, dds_topic, dds_type
-from roslet.sim.wire import HostStation, Station
+from roslet.sim.uart import Uart
+from roslet.sim.wire import HostStation, SlipStation, Station
 from roslet.wire.rtps import guid, locator, qos
 from roslet.wire.rtps.qos import Qos
 
 if TYPE_CHECKING:
+    import argparse
+
     from roslet.sim.link import Link
+    from roslet.sim.wire import DesignStation
     from roslet.wire.message import Message
 
 QOS = Qos((qos.RELIABLE, qos.DEFAULT_BLOCKING), history=(qos.KEEP_LAST, 10))  # as rclpy has it
@@ -25,10 +30,13 @@ DOMAIN, NUMBER = 0, 0
 
 
 class ParticipantStation(Station):
-    """An RTPS participant on a software host: what a shell of sockets is elsewhere."""
+    """An RTPS participant on a software host: what a shell of sockets is elsewhere. `serial`: on a serial line."""
 
-    def __init__(self, link: Link) -> None:
-        self.station = HostStation(Host(HOST_MAC, f"{HOST}/{PREFIX}"), link)
+    def __init__(self, link: Link, serial: bool = False) -> None:
+        address = f"{HOST}/{PREFIX}"
+        self.station = (
+            SlipStation(SlipHost(address), link) if serial else HostStation(Host(HOST_MAC, address), link)
+        )
         self.link = link
         ports = locator.metatraffic_unicast_port(DOMAIN, NUMBER), locator.user_unicast_port(DOMAIN, NUMBER)
         group = ".".join(map(str, locator.SPDP_MULTICAST_ADDRESS)), locator.metatraffic_multicast_port(DOMAIN)
@@ -64,7 +72,7 @@ class RosSession(Session):
 
     def _add_host(self) -> None:
         self.counts = {"sent": 0, "received": 0, "frames": 0}
-        station = ParticipantStation(self.wire.hub.port())
+        station = ParticipantStation(self.wire.hub.port(), self.SERIAL)
         self.wire.add(station)
         self._participant = station.participant
         self._heard, self._said = (
@@ -77,7 +85,7 @@ class RosSession(Session):
         self._matched = False
 
     def _hear(self) -> None:
-        if self._tap:
+        if self._outside:
             return
         while (event := self._participant.next_event()) is not None:
             if isinstance(event, events.ParticipantDiscovered):
@@ -95,7 +103,7 @@ class RosSession(Session):
                 self._show(self._heard.deserialize(event.payload))
 
     def _ask(self) -> None:
-        if self._tap or not self._matched:
+        if self._outside or not self._matched:
             return
         message = self._next()
         self._writer.write(message.serialize(), self.wire.now)
@@ -178,8 +186,52 @@ class ImuSession(RosSession):
         return message  # type: ignore[no-any-return]
 
 
+class CountSession(RosSession):
+    """Over a serial line: numbers that count, and now and then one to go on from. A bit takes 8 cycles, the fewest."""
+
+    SERIAL = True
+    DIVISOR = 8
+    PUBLISHED = ("/count", "std_msgs/msg/UInt32")
+    SUBSCRIBED = ("/preset", "std_msgs/msg/UInt32")
+    _turns = itertools.cycle((True, False, False, False))
+
+    @classmethod
+    def options(cls, factor: float) -> dict[str, float]:
+        return {"baud": CLOCK / factor / cls.DIVISOR}
+
+    def _add_host(self) -> None:
+        super()._add_host()
+        del self.counts["frames"]
+
+    def _plug(self, arguments: argparse.Namespace) -> DesignStation:
+        self.counts = {}
+        uart = Uart(self._model, CLOCK / self.DIVISOR)
+        if not arguments.pty:
+            return self.wire.serial(self._model, uart)
+        from roslet.sim.pty import Pty
+
+        pty = Pty()
+        station = self.wire.serial(self._model, uart, pty)
+        network = f"ros2://{DOMAIN}?slip={pty.path}&address={HOST}/{PREFIX}"
+        self._tell(f"the line is {pty.path}: --network '{network}'", pty=pty.path, network=network)
+        return station
+
+    def _ask(self) -> None:
+        if next(self._turns):
+            super()._ask()
+
+    def _show(self, message: Any) -> None:
+        self._tell(f"/count  {message.data}", received=message.data)
+
+    def _next(self) -> Message:
+        number = 1000 * (self.counts["sent"] + 1)
+        self._tell(f"/preset  {number} published", sent=number)
+        return self._said(data=number)  # type: ignore[call-arg]
+
+
 SESSIONS: dict[str, type[RosSession]] = {
     "topic-pub-sub": TextSession,
     "typed-echo": EchoSession,
     "imu-node": ImuSession,
+    "serial-count": CountSession,
 }

@@ -1,4 +1,5 @@
-"""`roslet gateware sim`: a gateware example at the pins of a simulated PHY, among software hosts or on a TAP device."""
+"""`roslet gateware sim`: a gateware example at the pins of a simulated PHY, among software hosts or on a TAP device; or on a
+serial line."""
 
 from __future__ import annotations
 
@@ -19,15 +20,17 @@ if TYPE_CHECKING:
     from roslet.engine.net.endpoint import Endpoint
     from roslet.engine.net.host import Host
     from roslet.sim.model import Model
-    from roslet.sim.wire import GatewareStation, Wire
+    from roslet.sim.wire import DesignStation, Wire
 
 EXAMPLES = {
-    name: f"{name.replace('-', '_')}.py" for name in ("imu-node", "topic-pub-sub", "typed-echo", "udp-tx-rx")
+    name: f"{name.replace('-', '_')}.py"
+    for name in ("imu-node", "serial-count", "topic-pub-sub", "typed-echo", "udp-tx-rx")
 }
 # The design's clock, in its own time: as slow as 100 Mbit/s allows without a pause.
 CLOCK, PHY_CLOCK = 50e6, 25e6
 # Seconds of the wire in a second of the design: so 200,000 cycles a second, which one processor simulates in real time.
 FACTOR = 250.0
+LINES = {False: "Ethernet", True: "a serial line"}
 HOST, HOST_MAC, PREFIX = "192.168.1.10", "02:00:00:00:00:10", 24
 # What the software host sends, in turn, and how often it does, and pings.
 LENGTHS = (1, 5, 10, 15, 0)
@@ -44,13 +47,16 @@ def add(group: Group) -> None:
         "roslet gateware sim topic-pub-sub\n"
         "roslet gateware sim typed-echo --json\n"
         "roslet gateware sim udp-tx-rx --seconds 20 --pcap wire.pcap --loss 0.1\n"
-        "roslet gateware sim udp-tx-rx --tap tap0   # as root; then: ping 192.168.1.100",
+        "roslet gateware sim udp-tx-rx --tap tap0   # as root; then: ping 192.168.1.100\n"
+        "roslet gateware sim serial-count --pty --seconds 600",
         "json",
     )
     sim.description = (
         "Simulate a gateware example at the pins of its PHY.\n\nThe design is compiled, which takes a minute or two the "
         f"first time. On the wire with it is a software host, {HOST}, which pings it and sends it datagrams, or is a ROS 2 "
-        "node and exchanges messages with it; or, with --tap, the Linux kernel, and whatever ROS 2 runs there."
+        "node and exchanges messages with it; or, with --tap, the Linux kernel, and whatever ROS 2 runs there. serial-count "
+        "has a serial line instead, at whose other end the host is, or with --pty whoever opens the pseudo-terminal: the "
+        "network to use is told."
     )
     sim.add_argument("example", choices=EXAMPLES, metavar="EXAMPLE", help=", ".join(EXAMPLES))
     sim.add_argument(
@@ -67,6 +73,11 @@ def add(group: Group) -> None:
         metavar="NAME",
         help=f"make a TAP device with the address {HOST} in place of the software host",
     )
+    sim.add_argument(
+        "--pty",
+        action="store_true",
+        help="make a pseudo-terminal in place of the software host, for a serial line",
+    )
     sim.add_argument("--pcap", metavar="FILE", help="write what passes the wire")
     sim.add_argument("--vcd", metavar="FILE", help="write a waveform of every signal: large")
     sim.add_argument("--loss", type=float, default=0.0, metavar="P", help="lose frames with this probability")
@@ -82,8 +93,11 @@ def run(arguments: argparse.Namespace) -> int:
     except ModuleNotFoundError as error:
         raise CommandError(f"{error.name} is not installed: pip install 'roslet[gateware]'") from None
     kind = _session(arguments.example)
-    rate = {} if kind.RATE is None else {"rate": kind.RATE / arguments.factor}
-    top = design(round(CLOCK / arguments.factor), counters=True, **rate)
+    without = ("tap", "pcap", "loss") if kind.SERIAL else ("pty",)
+    for option in without:
+        if getattr(arguments, option):
+            raise CommandError(f"{arguments.example} has {LINES[kind.SERIAL]}: there is no --{option} for it")
+    top = design(round(CLOCK / arguments.factor), counters=True, **kind.options(arguments.factor))
     if not arguments.json:
         note("compiling the design, unless that was done before")
     with Model(top) as model:
@@ -125,14 +139,19 @@ class Session:
     RATE: ClassVar[float | None] = None
     """Messages that the example publishes in a second of its own time, where that is more than the wire would carry in one
     of its seconds."""
+    SERIAL: ClassVar[bool] = False
+    """Whether a serial line is in place of Ethernet."""
+
+    @classmethod
+    def options(cls, factor: float) -> dict[str, float]:
+        """What the design is made with, beside its clock."""
+        return {} if cls.RATE is None else {"rate": cls.RATE / factor}
 
     def __init__(self, arguments: argparse.Namespace, model: Model, reasons: dict[str, int]) -> None:
-        from roslet.sim.link import Faults
-        from roslet.sim.mii import Mii
         from roslet.sim.wire import Wire
 
         self._json = arguments.json
-        self._tap = arguments.tap
+        self._outside = bool(arguments.tap or arguments.pty)
         self._reasons = reasons
         self._model = model
         self._host: Host | None = None
@@ -140,23 +159,22 @@ class Session:
         self._lengths = itertools.cycle(LENGTHS)
         self._leds = 0
         self.counts = {"texts": 0, "pings answered": 0, "frames": 0}
-        for name, hertz in (("clk", CLOCK), ("phy_rx_clk", PHY_CLOCK), ("phy_tx_clk", PHY_CLOCK)):
-            model.clock(name, hertz)
+        model.clock("clk", CLOCK)
+        for name in () if self.SERIAL else ("phy_rx_clk", "phy_tx_clk"):
+            model.clock(name, PHY_CLOCK)
         if arguments.vcd:
             model.vcd(arguments.vcd)
         model.set("rst_n", 0)
         model.run(1e-6)
         model.set("rst_n", 1)
-        self.wire: Wire = Wire(arguments.factor, 1.0 if arguments.tap else None)
-        link = self.wire.hub.port()
-        if arguments.loss:
-            link = Faults(link, arguments.seed, loss=arguments.loss)
-        self._gates: GatewareStation = self.wire.gateware(model, Mii(model), link)
+        self.wire: Wire = Wire(arguments.factor, 1.0 if self._outside else None)
+        self._gates = self._plug(arguments)
         self._capture = self.wire.capture(pathlib.Path(arguments.pcap)) if arguments.pcap else None
-        self.wire.hub.listeners.append(self._count)
+        if not self.SERIAL:
+            self.wire.hub.listeners.append(self._count)
         if arguments.tap:
-            self._plug(arguments.tap)
-        else:
+            self._plug_tap(arguments.tap)
+        elif not self._outside:
             self._add_host()
         self._began = time.perf_counter()
         self._first = model.cycles("clk")
@@ -164,7 +182,17 @@ class Session:
     def _count(self, frame: bytes, now: float) -> None:
         self.counts["frames"] += 1
 
-    def _plug(self, name: str) -> None:
+    def _plug(self, arguments: argparse.Namespace) -> DesignStation:
+        """Put the design on the wire."""
+        from roslet.sim.link import Faults
+        from roslet.sim.mii import Mii
+
+        link = self.wire.hub.port()
+        if arguments.loss:
+            link = Faults(link, arguments.seed, loss=arguments.loss)
+        return self.wire.gateware(self._model, Mii(self._model), link)
+
+    def _plug_tap(self, name: str) -> None:
         from roslet.sim.tap import Tap
 
         self.wire.tap(Tap(name))

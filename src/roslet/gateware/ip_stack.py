@@ -13,7 +13,7 @@ from roslet.gateware.drops import drop_outputs
 from roslet.gateware.fifo import FrameRegister
 from roslet.gateware.icmp import MAX_DATA, IcmpEcho
 from roslet.gateware.ipv4_rx import Ipv4Rx, ProtocolSwitch
-from roslet.gateware.ipv4_tx import Ipv4Tx
+from roslet.gateware.ipv4_tx import LONGEST, Ipv4Tx
 from roslet.gateware.meta import (
     ADDRESSES,
     ETHERNET_RX,
@@ -24,26 +24,27 @@ from roslet.gateware.meta import (
     UDP_RX,
     UDP_TX,
 )
-from roslet.gateware.reassembly import Reassembly
+from roslet.gateware.reassembly import NoReassembly, Reassembly
 from roslet.gateware.stream import FrameSignature
 from roslet.gateware.udp import UdpRx, UdpTx
-from roslet.wire.net import ethernet, ipv4
+from roslet.gateware.wires import expose
+from roslet.wire.net import ethernet, icmp, ipv4, udp
 
-
-def register(m: Module, name: str, meta: Any, source: Any, sink: Any) -> None:
-    """Connect with registers between: paths through several blocks would be too long for 100 MHz."""
-    m.submodules[f"{name}_register"] = between = FrameRegister(meta)
-    connect(m, source, between.i)
-    connect(m, between.o, sink)
+REASSEMBLY = ("expiration", "ip_payloadsmem")
+"""The ports of `Reassembly` that are the stack's."""
+_BLOCKS = {ipv4.ICMP: "icmp", ipv4.UDP: "udp"}
+"""Which take a protocol."""
 
 
 class IpStack(wiring.Component):
     """UDP over IPv4, with ICMP echo and reassembly.
 
-    echo_data   the most data of a ping that is answered
+    echo_data   the most data of a ping that is answered; None: none is
     fragments   of a datagram, at most; `pendings` datagrams wait for theirs at once, each fragment with up to
-                `fragment_size` octets
+                `fragment_size` octets; with 1 there is no reassembly, nor the ports for it
     mtu         octets of a packet that is sent
+    longest     octets of data that `udp_tx` has at most: where all fits into packets, there is no logic to cut
+    registers   whether there are some between blocks: without them paths are too long for 100 MHz
     igmp        whether there is a port for what comes of that protocol
 
     Ports: `rx` and `tx`, packets from and to a link; `udp_rx`, the data of every UDP datagram for this node, whatever its
@@ -53,23 +54,32 @@ class IpStack(wiring.Component):
 
     def __init__(
         self,
-        echo_data: int = MAX_DATA,
+        echo_data: int | None = MAX_DATA,
         pendings: int = 1,
         fragments: int = 2,
         fragment_size: int = 1480,
         mtu: int = ethernet.MTU,
         igmp: bool = False,
+        longest: int = LONGEST - udp.SIZE,
+        registers: bool = True,
     ) -> None:
-        self._mtu = mtu
-        self._has_igmp = igmp
+        self._registers = registers
+        sizes = [udp.SIZE + longest, *([] if echo_data is None else [icmp.SIZE + echo_data])]
+        self._packets = Ipv4Tx(mtu=mtu, max_length=min(LONGEST, max(sizes)))
+        echo = {} if echo_data is None else {"icmp": IcmpEcho(echo_data)}
+        self._protocols = [*([ipv4.ICMP] if echo else []), ipv4.UDP, *([ipv4.IGMP] if igmp else [])]
         self._blocks: dict[str, Any] = {
             "ipv4": Ipv4Rx(),
-            "reassembly": Reassembly(pendings, fragments, fragment_size),
-            "protocol": ProtocolSwitch((ipv4.ICMP, ipv4.UDP, *((ipv4.IGMP,) if igmp else ()))),
-            "icmp": IcmpEcho(echo_data),
+            "reassembly": (
+                Reassembly(pendings, fragments, fragment_size) if fragments > 1 else NoReassembly()
+            ),
+            "protocol": ProtocolSwitch(self._protocols),
+            **echo,
             "udp": UdpRx(),
         }
         self._drops = drop_outputs(self._blocks)
+        reassembly = self._blocks["reassembly"].signature.members
+        self.memory = {name: reassembly[name] for name in REASSEMBLY if name in reassembly}
         super().__init__(
             {
                 "rx": In(FrameSignature(ETHERNET_RX)),
@@ -78,8 +88,7 @@ class IpStack(wiring.Component):
                 "udp_tx": In(FrameSignature(UDP_TX)),
                 **({"igmp": Out(FrameSignature(IPV4_RX))} if igmp else {}),
                 "addresses": In(ADDRESSES),
-                "expiration": In(32),
-                "ip_payloadsmem": self._blocks["reassembly"].signature.members["ip_payloadsmem"],
+                **self.memory,
                 **{name: Out(1) for name in self._drops},
             }
         )
@@ -96,31 +105,46 @@ class IpStack(wiring.Component):
         self._send(m)
         return m
 
+    def _join(self, m: Module, name: str, meta: Any, source: Any, sink: Any) -> None:
+        """Connect, with registers between if there shall be any."""
+        if not self._registers:
+            connect(m, source, sink)
+            return
+        m.submodules[f"{name}_register"] = between = FrameRegister(meta)
+        connect(m, source, between.i)
+        connect(m, between.o, sink)
+
     def _receive(self, m: Module) -> None:
         blocks = self._blocks
         received, reassembly = blocks["ipv4"], blocks["reassembly"]
-        m.submodules.datagrams = datagrams = FrameArbiter(2, IPV4_RX)
-        register(m, "packets", ETHERNET_RX, flipped(self.rx), received.i)
-        register(m, "fragments", IPV4_FRAGMENT, received.fragments, reassembly.i)
-        register(m, "received", IPV4_RX, received.o, datagrams.i0)
-        connect(m, reassembly.o, datagrams.i1)
-        register(m, "datagrams", IPV4_RX, datagrams.o, blocks["protocol"].i)
-        connect(m, blocks["protocol"].o0, blocks["icmp"].i)
-        connect(m, blocks["protocol"].o1, blocks["udp"].i)
-        if self._has_igmp:
-            connect(m, blocks["protocol"].o2, flipped(self.igmp))
-        register(m, "udp_rx", UDP_RX, blocks["udp"].o, flipped(self.udp_rx))
-        connect(m, reassembly.ip_payloadsmem, flipped(self.ip_payloadsmem))
-        m.d.comb += reassembly.expiration.eq(self.expiration)
+        self._join(m, "packets", ETHERNET_RX, flipped(self.rx), received.i)
+        datagrams = received.o
+        if self.memory:
+            m.submodules.datagrams = both = FrameArbiter(2, IPV4_RX)
+            self._join(m, "fragments", IPV4_FRAGMENT, received.fragments, reassembly.i)
+            self._join(m, "received", IPV4_RX, received.o, both.i0)
+            connect(m, reassembly.o, both.i1)
+            datagrams = both.o
+            expose(m, reassembly, self, self.memory)
+        else:
+            connect(m, received.fragments, reassembly.i)
+        self._join(m, "datagrams", IPV4_RX, datagrams, blocks["protocol"].i)
+        for n, protocol in enumerate(self._protocols):
+            taker = flipped(self.igmp) if protocol == ipv4.IGMP else blocks[_BLOCKS[protocol]].i
+            connect(m, getattr(blocks["protocol"], f"o{n}"), taker)
+        self._join(m, "udp_rx", UDP_RX, blocks["udp"].o, flipped(self.udp_rx))
 
     def _send(self, m: Module) -> None:
-        m.submodules.udp_tx = udp = UdpTx()
-        m.submodules.datagrams_tx = datagrams = FrameArbiter(2, IPV4_TX)
-        m.submodules.ipv4_tx = packets = Ipv4Tx(mtu=self._mtu)
-        for block in (udp, packets):
+        m.submodules.udp_tx = datagrams = UdpTx()
+        m.submodules.ipv4_tx = packets = self._packets
+        for block in (datagrams, packets):
             m.d.comb += block.addresses.eq(self.addresses)
-        connect(m, flipped(self.udp_tx), udp.i)
-        register(m, "udp_tx", IPV4_TX, udp.o, datagrams.i0)
-        register(m, "echoes", IPV4_TX, self._blocks["icmp"].o, datagrams.i1)
-        connect(m, datagrams.o, packets.i)
-        register(m, "packets_tx", ETHERNET_TX, packets.o, flipped(self.tx))
+        connect(m, flipped(self.udp_tx), datagrams.i)
+        if "icmp" in self._blocks:
+            m.submodules.datagrams_tx = both = FrameArbiter(2, IPV4_TX)
+            self._join(m, "udp_tx", IPV4_TX, datagrams.o, both.i0)
+            self._join(m, "echoes", IPV4_TX, self._blocks["icmp"].o, both.i1)
+            connect(m, both.o, packets.i)
+        else:
+            self._join(m, "udp_tx", IPV4_TX, datagrams.o, packets.i)
+        self._join(m, "packets_tx", ETHERNET_TX, packets.o, flipped(self.tx))

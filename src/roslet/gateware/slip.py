@@ -164,16 +164,14 @@ class SlipTx(wiring.Component):
 class SlipLink(wiring.Component):
     """Packets between `sync` and a serial line, each bit of which takes `divisor` cycles: what a MAC is to Ethernet.
 
-    Ports: `uart_rx` and `uart_tx`, the pins; `rx` gives and `tx` takes IP packets of up to `max_size` octets. `tx` is held
-    in a memory of `tx_depth` items until it is whole (see `SlipTx`, and there for packets that end badly). `rx` must be
-    taken within one octet's time, 10 * `divisor` cycles, or its packet ends badly. For one cycle are high, as `UartRx`,
-    `SlipRx` and `SlipTx` have them: `drop_uart_framing drop_uart_overrun drop_rx_line drop_rx_escape drop_rx_too_long
-    drop_tx_too_long`. `drop_rx_line` is the packet that a fault of `drop_uart_*` has spoilt.
+    Ports: `uart_rx` and `uart_tx`, the pins; `rx` gives IP packets of up to `max_size` octets, and `tx` takes those of fewer
+    than `tx_depth`: it is held in a memory of so many items until it is whole (see `SlipTx`, and there for packets that end
+    badly). `rx` must be taken within one octet's time, 10 * `divisor` cycles, or its packet ends badly. For one cycle are
+    high, as `UartRx`, `SlipRx` and `SlipTx` have them: `drop_uart_framing drop_uart_overrun drop_rx_line drop_rx_escape
+    drop_rx_too_long drop_tx_too_long`. `drop_rx_line` is the packet that a fault of `drop_uart_*` has spoilt.
     """
 
     def __init__(self, divisor: int, max_size: int = ethernet.MTU, tx_depth: int = 2048) -> None:
-        if tx_depth <= max_size:
-            raise ValueError(f"{tx_depth} items do not hold a packet of {max_size} octets and its end")
         self._tx_line = UartTx(divisor)
         self._blocks: dict[str, Any] = {
             "uart": UartRx(divisor),

@@ -12,10 +12,12 @@ from roslet.gateware import multicast
 from roslet.gateware.drops import drop_outputs
 from roslet.gateware.icmp import MAX_DATA
 from roslet.gateware.ip_stack import IpStack
+from roslet.gateware.ipv4_tx import LONGEST
 from roslet.gateware.meta import ADDRESSES, LookupSignature
 from roslet.gateware.octets import octets, pick
 from roslet.gateware.stream import FrameSignature
-from roslet.wire.net import ethernet, ipv4
+from roslet.gateware.wires import expose
+from roslet.wire.net import ethernet, ipv4, udp
 
 _DESTINATION = next(field.offset for field in ipv4.FIELDS if field.name == "destination")
 
@@ -85,8 +87,7 @@ class SlipStack(wiring.Component):
 
     groups      how many multicast groups may be joined
     askers      how many ask for hardware addresses
-    mtu         octets of a packet that is sent
-    the others  as `UdpStack` has them
+    the others  as `IpStack` has them
 
     Ports: `rx` and `tx`, IP packets from and to a link, such as `slip.SlipLink`; `udp_rx`, `udp_tx`, `addresses`, `groups`,
     `expiration`, `ip_payloadsmem` as `UdpStack` has them, of `addresses` neither `mac` nor `gateway`: everything goes to the
@@ -101,17 +102,19 @@ class SlipStack(wiring.Component):
         self,
         groups: int = 0,
         askers: int = 1,
-        echo_data: int = MAX_DATA,
+        echo_data: int | None = MAX_DATA,
         pendings: int = 1,
         fragments: int = 2,
         fragment_size: int = 1480,
         mtu: int = ethernet.MTU,
+        longest: int = LONGEST - udp.SIZE,
+        registers: bool = True,
     ) -> None:
         if mtu > ethernet.MTU:
             raise ValueError(f"a packet has {ethernet.MTU} octets at most, not {mtu}")
         self._askers = askers
         self._groups = GroupFilter(groups)
-        self._ip = ip = IpStack(echo_data, pendings, fragments, fragment_size, mtu)
+        self._ip = ip = IpStack(echo_data, pendings, fragments, fragment_size, mtu, False, longest, registers)
         self._drops = drop_outputs({"groups": self._groups})
         self._ip_drops = [name for name in ip.signature.members if name.startswith("drop_")]
         members = ip.signature.members
@@ -123,7 +126,7 @@ class SlipStack(wiring.Component):
                 **{f"lookup{n}": In(LookupSignature()) for n in range(askers)},
                 "addresses": In(ADDRESSES),
                 "groups": In(multicast.groups(groups)),
-                **{name: members[name] for name in ("expiration", "ip_payloadsmem")},
+                **ip.memory,
                 **{name: Out(1) for name in (*self._drops, *self._ip_drops)},
             }
         )
@@ -137,11 +140,10 @@ class SlipStack(wiring.Component):
         connect(m, ip.tx.stream, flipped(self.tx).stream)
         connect(m, flipped(self.udp_tx), ip.udp_tx)
         connect(m, ip.udp_rx, flipped(self.udp_rx))
-        connect(m, ip.ip_payloadsmem, flipped(self.ip_payloadsmem))
+        expose(m, ip, self, ip.memory)
         m.d.comb += [
             ip.rx.meta.eq(0),
             ip.addresses.eq(self.addresses),
-            ip.expiration.eq(self.expiration),
             groups.groups.eq(self.groups),
         ]
         for name, (_, output) in self._drops.items():

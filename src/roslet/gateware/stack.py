@@ -18,6 +18,7 @@ from roslet.gateware.igmp import Igmp
 from roslet.gateware.ip_stack import IpStack
 from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, LookupSignature
 from roslet.gateware.stream import FrameSignature
+from roslet.gateware.wires import expose
 
 ARP_SETTINGS = ("retry_count", "retry_interval", "timeout")
 
@@ -31,7 +32,7 @@ class UdpStack(wiring.Component):
     cache_width  ARP remembers 2**cache_width addresses
     echo_data    the most data of a ping that is answered
     fragments    of a datagram, at most; `pendings` datagrams wait for theirs at once, each fragment with up to
-                 `fragment_size` octets
+                 `fragment_size` octets; with 1 there is no reassembly, nor the ports for it
 
     Ports: `rx` and `tx`, frames from and to a MAC; `udp_rx`, the data of every UDP datagram for this node, whatever its
     port; `udp_tx`, data to be sent, whose hardware addresses are asked for by `lookup0 ..`; `addresses`, and `groups`, those
@@ -74,8 +75,7 @@ class UdpStack(wiring.Component):
                 "groups": In(multicast.groups(groups)),
                 "enable": In(1),
                 **{name: self._blocks["arp"].signature.members[name] for name in ARP_SETTINGS},
-                "expiration": members["expiration"],
-                "ip_payloadsmem": members["ip_payloadsmem"],
+                **ip.memory,
                 **{name: Out(1) for name in (*self._drops, *self._ip_drops)},
             }
         )
@@ -91,10 +91,9 @@ class UdpStack(wiring.Component):
         for name, (block, output) in self._drops.items():
             m.d.comb += getattr(self, name).eq(getattr(self._blocks[block], output))
         m.d.comb += [getattr(self, name).eq(getattr(ip, name)) for name in self._ip_drops]
-        m.d.comb += ip.expiration.eq(self.expiration)
         connect(m, flipped(self.udp_tx), ip.udp_tx)
         connect(m, ip.udp_rx, flipped(self.udp_rx))
-        connect(m, ip.ip_payloadsmem, flipped(self.ip_payloadsmem))
+        expose(m, ip, self, ip.memory)
         self._link(m, ethernet)
         self._ask(m)
         return m

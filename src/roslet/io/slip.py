@@ -136,6 +136,8 @@ class SlipDomain(ParticipantShell):
         self.reactor.register(self._fd, self._ready, READ)
 
     def _ready(self, events: int) -> None:
+        if self._closed:  # by another thread, when the loop had looked already
+            return
         if events & (READ | GONE):
             self._read()
         if not self._closed:

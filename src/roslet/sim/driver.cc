@@ -1,4 +1,5 @@
-// Drives one compiled design: clocks of any period and phase, pins by name, MII and GMII pins by queues of symbols, waveforms.
+// Drives one compiled design: clocks of any period and phase, pins by name, MII and GMII pins by queues of symbols, serial
+// lines by queues of octets, waveforms.
 //
 // Linked with what Yosys's write_cxxrtl made of the design into one shared library with the C interface below.
 // Times are picoseconds. A symbol of MII pins: bits 7..0 data, bit 8 data valid (rx_dv, tx_en), bit 9 error (rx_er, tx_er).
@@ -111,6 +112,61 @@ struct Mii {
 	}
 };
 
+// The other end of a serial line, 8N1.
+struct Uart {
+	int clock; // at whose rising edges the pins are looked at
+	Item *rx, *tx; // the design's
+	uint64_t bit; // how long one takes
+	std::deque<uint8_t> waiting; // for rx
+	uint32_t bits = 0, left = 0; // of the octet that is being sent
+	uint64_t next = 0; // when the next bit is due
+	enum { IDLE, HEARS, BREAK } state = IDLE;
+	uint32_t octet = 0, count = 0;
+	uint64_t at = 0; // the middle of the next bit from tx
+	std::deque<uint8_t> octets; // from tx
+	uint32_t framing = 0; // octets without a stop bit
+
+	void sample(uint64_t now) {
+		const bool level = *tx->curr & 1;
+		if (state == IDLE && !level) {
+			state = HEARS;
+			octet = count = 0;
+			at = now + bit + bit / 2;
+		} else if (state == BREAK && level) {
+			state = IDLE;
+		} else if (state == HEARS && now >= at) {
+			at += bit;
+			if (count < 8) {
+				octet |= uint32_t(level) << count++;
+			} else if (level) {
+				octets.push_back(octet);
+				state = IDLE;
+			} else {
+				framing++;
+				state = BREAK;
+			}
+		}
+	}
+
+	void drive(uint64_t now) {
+		if (now < next)
+			return;
+		if (!left) {
+			if (waiting.empty())
+				return;
+			bits = uint32_t(waiting.front()) << 1 | 1 << 9; // start, 8 of data, stop
+			left = 10;
+			waiting.pop_front();
+			if (now - next >= bit)
+				next = now;
+		}
+		*rx->next = bits & 1;
+		bits >>= 1;
+		left--;
+		next += bit;
+	}
+};
+
 // A name in the design, of one or more parts.
 struct Pin {
 	std::vector<Item *> parts;
@@ -123,6 +179,7 @@ struct Model {
 	std::vector<Pin> pins;
 	std::vector<Clock> clocks;
 	std::vector<Mii> ports;
+	std::vector<Uart> lines;
 	uint64_t now = 0;
 	FILE *vcd_file = nullptr;
 	std::unique_ptr<cxxrtl::vcd_writer> vcd;
@@ -202,11 +259,17 @@ struct Model {
 		for (Mii &port : ports)
 			if (port.txd && clocks[port.tx_clock].rise == now)
 				port.sample(now);
+		for (Uart &line : lines)
+			if (clocks[line.clock].rise == now)
+				line.sample(now);
 		if (top.commit() && !converged)
 			top.step();
 		for (Mii &port : ports)
 			if (port.rxd && clocks[port.rx_clock].rise == now)
 				port.drive();
+		for (Uart &line : lines)
+			if (clocks[line.clock].rise == now)
+				line.drive(now);
 		for (Clock &clock : clocks)
 			if (clock.rise == now) {
 				clock.cycles++;
@@ -324,6 +387,38 @@ uint32_t roslet_receive(Model *model, int port, uint16_t *symbols, uint32_t room
 	frames.pop_front();
 	return count;
 }
+
+// Pins are numbers of roslet_find. `bit`: how long one takes.
+int roslet_uart(Model *model, int clock, int rx, int tx, uint64_t bit) {
+	Uart line{};
+	line.clock = clock;
+	line.rx = model->pins[rx].parts[0];
+	line.tx = model->pins[tx].parts[0];
+	line.bit = bit;
+	*line.rx->next = 1;
+	model->lines.push_back(std::move(line));
+	return model->lines.size() - 1;
+}
+
+void roslet_uart_send(Model *model, int line, const uint8_t *octets, uint32_t count) {
+	auto &waiting = model->lines[line].waiting;
+	waiting.insert(waiting.end(), octets, octets + count);
+}
+
+// Octets whose start bit has not gone out.
+uint32_t roslet_uart_waiting(Model *model, int line) { return model->lines[line].waiting.size(); }
+
+// The number of octets that came out since, which are written, `room` of them at most.
+uint32_t roslet_uart_receive(Model *model, int line, uint8_t *octets, uint32_t room) {
+	auto &found = model->lines[line].octets;
+	const uint32_t count = std::min<size_t>(found.size(), room);
+	std::copy_n(found.begin(), count, octets);
+	found.erase(found.begin(), found.begin() + count);
+	return count;
+}
+
+// How many octets from the design had no stop bit.
+uint32_t roslet_uart_framing(Model *model, int line) { return model->lines[line].framing; }
 
 uint64_t roslet_now(Model *model) { return model->now; }
 

@@ -1,4 +1,4 @@
-"""One Ethernet in simulated time: gateware, software hosts and TAP devices on the same hub.
+"""One Ethernet in simulated time: gateware, software hosts and TAP devices on the same hub; or one serial line.
 
 Time of the wire is in seconds; a compiled design's own time is mapped to it by a stated factor. With factor 250 a design
 whose clock was started with 50 MHz lives through 200,000 cycles in a second of the wire: what it counts in cycles and what
@@ -15,11 +15,13 @@ from typing import TYPE_CHECKING
 from roslet.sim.link import Damaged, Hub, Link
 from roslet.sim.mii import Mii, fcs
 from roslet.sim.model import PICOSECONDS
+from roslet.sim.uart import Uart
 
 if TYPE_CHECKING:
     import pathlib
 
     from roslet.engine.net.host import Host
+    from roslet.engine.net.slip_host import SlipHost
     from roslet.sim.capture import Capture
     from roslet.sim.model import Model
 
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
 QUANTUM = 1e-5
 # Frames that wait to go into a design's pins: a second of the largest ones at 100 Mbit/s.
 MAX_WAITING = 8192
+# Octets that wait to go into a design's serial pin: what is more waits in the link.
+MAX_OCTETS = 256
 # Seconds of the wall clock after which `until` is looked at, though nothing has happened on the wire.
 LOOK = 0.02
 # Faults of a frame that no receiver minds.
@@ -49,11 +53,24 @@ class Station:
         """When it must be looked at, apart from what the link has."""
         return None
 
+    def coming(self) -> float | None:
+        """When its link has something for it."""
+        return self.link.deadline()
+
+    def filenos(self) -> list[int]:
+        """What to wait for, where something comes from outside."""
+        number = self.link.fileno()
+        return [] if number is None else [number]
+
+    def close(self) -> None:
+        """Give back the link."""
+        self.link.close()
+
 
 class HostStation(Station):
     """A software host."""
 
-    def __init__(self, host: Host, link: Link) -> None:
+    def __init__(self, host: Host | SlipHost, link: Link) -> None:
         self.host = host
         self.link = link
         self.damaged = 0
@@ -74,18 +91,30 @@ class HostStation(Station):
         return self.host.deadline()
 
 
-class GatewareStation(Station):
-    """A design at its MII pins. `factor`: seconds of the wire in a second of the design. `faults` counts what was wrong with
-    frames that it sent (`mii.FAULTS`); of those only the ones that a receiver does not mind get further. `dropped` counts
-    frames that came faster than its pins take them."""
+class SlipStation(HostStation):
+    """A software host at one end of a serial line; the link carries octets."""
 
-    def __init__(self, model: Model, mii: Mii, link: Link, factor: float) -> None:
+    def __init__(self, host: SlipHost, link: Link) -> None:
+        super().__init__(host, link)
+        self._slip = host
+
+    def exchange(self, now: float) -> None:
+        for octets in self.link.receive(now):
+            self._slip.receive_data(octets, now)
+        self._slip.handle_deadline(now)
+        if octets := self._slip.data_to_send(now):
+            self.link.send(octets, now)
+
+
+class DesignStation(Station):
+    """A design with its pins on a link. `factor`: seconds of the wire in a second of the design. `faults` counts what was
+    wrong with what it sent, by name."""
+
+    def __init__(self, model: Model, link: Link, factor: float) -> None:
         self.model = model
-        self.mii = mii
         self.link = link
         self.factor = factor
         self.faults: dict[str, int] = {}
-        self.dropped = 0
         self._start = 0.0
 
     def start(self, now: float) -> None:
@@ -96,6 +125,16 @@ class GatewareStation(Station):
         until = round((now - self._start) / self.factor * PICOSECONDS)
         if until > self.model.picoseconds:
             self.model.run_until(until)
+
+
+class GatewareStation(DesignStation):
+    """A design at its MII pins. `faults` are those of `mii.FAULTS`; of such frames only the ones that a receiver does not
+    mind get further. `dropped` counts frames that came faster than its pins take them."""
+
+    def __init__(self, model: Model, mii: Mii, link: Link, factor: float) -> None:
+        super().__init__(model, link, factor)
+        self.mii = mii
+        self.dropped = 0
 
     def exchange(self, now: float) -> None:
         for frame in self.link.receive(now):
@@ -110,6 +149,29 @@ class GatewareStation(Station):
                 self.faults[fault] = self.faults.get(fault, 0) + 1
             if _MINOR.issuperset(sent.faults):
                 self.link.send(sent.frame, self._start + sent.end * self.factor)
+
+
+class SerialStation(DesignStation):
+    """A design at its serial pins; the link carries octets. The only fault is `framing`, an octet without a stop bit."""
+
+    def __init__(self, model: Model, uart: Uart, link: Link, factor: float) -> None:
+        super().__init__(model, link, factor)
+        self.uart = uart
+
+    def exchange(self, now: float) -> None:
+        if self.uart.waiting < MAX_OCTETS:
+            for octets in self.link.receive(now):
+                self.uart.send(octets)
+        if octets := self.uart.receive():
+            self.link.send(octets, now)
+        if self.uart.framing:
+            self.faults["framing"] = self.uart.framing
+
+    def coming(self) -> float | None:
+        return super().coming() if self.uart.waiting < MAX_OCTETS else None
+
+    def filenos(self) -> list[int]:
+        return super().filenos() if self.uart.waiting < MAX_OCTETS else []
 
 
 class Bridge(Station):
@@ -127,6 +189,14 @@ class Bridge(Station):
 
     def deadline(self) -> float | None:
         return self.other.deadline()
+
+    def filenos(self) -> list[int]:
+        other = self.other.fileno()
+        return super().filenos() + ([] if other is None else [other])
+
+    def close(self) -> None:
+        super().close()
+        self.other.close()
 
 
 class Wire:
@@ -158,6 +228,12 @@ class Wire:
         """One more station."""
         self.stations.append(station)
 
+    def design(self, station: DesignStation) -> None:
+        """One more that is a design, whose clocks must have been started."""
+        station.start(self.now)
+        self.add(station)
+        self._gates = True
+
     def host(self, host: Host, link: Link | None = None) -> HostStation:
         """A software host, on a port of its own unless another link is given; it says that it is there."""
         station = HostStation(host, link or self.hub.port())
@@ -170,9 +246,13 @@ class Wire:
     ) -> GatewareStation:
         """A design, likewise, as a station of `kind`. Its clocks must have been started."""
         station = (kind or GatewareStation)(model, mii, link or self.hub.port(), self.factor)
-        station.start(self.now)
-        self.add(station)
-        self._gates = True
+        self.design(station)
+        return station
+
+    def serial(self, model: Model, uart: Uart, link: Link | None = None) -> SerialStation:
+        """A design at one end of a serial line, likewise: a hub with two ports is such a line."""
+        station = SerialStation(model, uart, link or self.hub.port(), self.factor)
+        self.design(station)
         return station
 
     def tap(self, tap: Link, link: Link | None = None) -> Bridge:
@@ -225,17 +305,14 @@ class Wire:
         """The next time at which anything can happen."""
         target = min(end, self.now + self._step) if self._gates else end
         for station in self.stations:
-            for at in (station.deadline(), station.link.deadline()):
+            for at in (station.deadline(), station.coming()):
                 if at is not None and at < target:
                     target = at
         return max(target, self.now)
 
     def _wait(self, seconds: float) -> None:
         """For so long, or until something comes from outside."""
-        numbers = []
-        for station in self.stations:
-            links = [station.link, station.other] if isinstance(station, Bridge) else [station.link]
-            numbers += [number for number in (link.fileno() for link in links) if number is not None]
+        numbers = [number for station in self.stations for number in station.filenos()]
         if numbers:
             select.select(numbers, [], [], seconds)
         else:
@@ -244,7 +321,5 @@ class Wire:
     def close(self) -> None:
         """Give back the links. Closing twice is allowed."""
         for station in self.stations:
-            station.link.close()
-            if isinstance(station, Bridge):
-                station.other.close()
+            station.close()
         self.stations.clear()

@@ -12,7 +12,8 @@ from roslet.gateware.config import Config
 from roslet.gateware.mac import Mac
 from roslet.gateware.raw_udp import RawUdpRx, RawUdpTx
 from roslet.gateware.stack import UdpStack
-from roslet.gateware.tops.ethernet_node import EthernetNode
+from roslet.gateware.tops.linked_node import LinkedNode
+from roslet.gateware.tops.links import EthernetLink
 from roslet.gateware.wires import expose
 from roslet.wire.net import icmp
 
@@ -21,7 +22,7 @@ TX_MEMORY = ("addr", "ce", "rdata", "rel", "grant")
 """Ports of the two UDP memories."""
 
 
-class EthernetUdp(EthernetNode):
+class EthernetUdp(LinkedNode):
     """A node that sends and receives UDP datagrams for the user, is found by ARP and answers pings, of as much data as it
     takes in fragments.
 
@@ -64,9 +65,13 @@ class EthernetUdp(EthernetNode):
         self._tx = RawUdpTx(config.udp_txbuf_awidth)
         rx, tx, memory = (block.signature.members for block in (self._rx, self._tx, stack.ip_payloadsmem))
         super().__init__(
-            Mac(phy, config.mac_rx_fifo_depth, config.mac_tx_fifo_depth),
+            EthernetLink(
+                Mac(phy, config.mac_rx_fifo_depth, config.mac_tx_fifo_depth),
+                config.ros2clk_hz,
+                config.ext_rx_fifo_depth,
+                config.ext_tx_fifo_depth,
+            ),
             stack,
-            config.ros2clk_hz,
             {"udp_rxbuf": self._rx, "udp_txbuf": self._tx, **(blocks or {})},
             {
                 "ether_en": In(1),
@@ -85,8 +90,6 @@ class EthernetUdp(EthernetNode):
                 **(more or {}),
             },
             counters,
-            config.ext_rx_fifo_depth,
-            config.ext_tx_fifo_depth,
         )
 
     def _reset(self) -> Value:

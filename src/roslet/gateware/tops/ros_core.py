@@ -1,4 +1,4 @@
-"""A ROS 2 node from the pins of a PHY on, whose user gives and takes serialised messages, as streams of words."""
+"""A ROS 2 node from the pins of its link on, whose user gives and takes serialised messages, as streams of words."""
 
 from __future__ import annotations
 
@@ -10,29 +10,27 @@ from amaranth.hdl import Module, ResetInserter, Signal
 from amaranth.lib import memory
 from amaranth.lib.wiring import connect
 
-from roslet.gateware.mac import Mac
 from roslet.gateware.multicast import number
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.loader import Loader
 from roslet.gateware.rtps.participant import Participant
 from roslet.gateware.rtps.periods import QUICK_PERIOD, Periods
-from roslet.gateware.rtps.rom import entity_id
+from roslet.gateware.rtps.rom import Rom, entity_id
 from roslet.gateware.rtps.tables import Local
-from roslet.gateware.stack import UdpStack
-from roslet.gateware.tops.ethernet_node import EthernetNode
+from roslet.gateware.tops.linked_node import LinkedNode
+from roslet.gateware.tops.links import Ethernet, Serial, piece
 from roslet.gateware.udp import PortSwitch
 from roslet.gateware.wires import expose
 from roslet.wire import discovery_info
-from roslet.wire.net import ethernet, icmp, ipv4, udp
+from roslet.wire.net import udp
 from roslet.wire.rtps import guid, locator
 
-ARP_TRIES, ARP_INTERVAL, ARP_TIMEOUT = 4, 0.5, 30.0
-"""How often, and how many seconds apart, a hardware address is asked for; and seconds for which it is remembered."""
 ANNOUNCEMENT, REMINDER = 3.0, 0.1
 """Seconds between announcements, and between reminders of what has not been acknowledged."""
 STEP = 64
 """Cycles in which periods are counted: the manual's PRESCALER_DIV."""
-FRAGMENT = ethernet.MTU - ipv4.SIZE
+LEASE = 20.0
+"""Seconds that peers are told to wait for the next sign of us."""
 FRAGMENT_EXPIRATION = 1.0
 """Seconds for which fragments wait for the others."""
 SILENCE = 1.0
@@ -91,16 +89,17 @@ class Identity:
         return whole.emit()[4:]
 
 
-class RosCore(EthernetNode):
+class RosCore(LinkedNode):
     """A node with these topics.
 
     `writers` and `readers` have the names of DDS; `participants`, `endpoints` as `Participant` has them; `fragments`, of
-    which a datagram that is received may consist.
+    which a datagram that is received may consist: with 1 there is nothing to put them together. `link`, by which it is on
+    the network: Ethernet with `phy` and `cache_width`, unless another is given.
 
     A node that is reset is somebody else then, or peers would take its first numbers for old ones: in the end of its GUID
     prefix is the cycle, counted since the power is on, in which the first frame came; or that of SILENCE after its reset.
 
-    Ports: those of `EthernetNode`, and `publish0` .., `receive0` .., `room`, `alive`, `matched`, as `Participant` has them.
+    Ports: those of `LinkedNode`, and `publish0` .., `receive0` .., `room`, `alive`, `matched`, as `Participant` has them.
     """
 
     def __init__(
@@ -115,10 +114,14 @@ class RosCore(EthernetNode):
         fragments: int = 2,
         counters: bool = False,
         cache_width: int = 4,
+        link: Ethernet | Serial | None = None,
     ) -> None:
         self.identity = identity
         self._clk_hz = clk_hz
-        self._payloads = fragments * FRAGMENT
+        carrier = link or Ethernet(phy, cache_width)
+        self._fragments = fragments
+        self._settings = carrier.settings(clk_hz)
+        self._payloads = fragments * piece(carrier.mtu, fragments)
         info = identity.graph(len(writers), len(readers))
         graph = Local(
             discovery_info.TOPIC,
@@ -139,7 +142,9 @@ class RosCore(EthernetNode):
             participants,
             endpoints,
             longest=self._payloads - udp.SIZE,
+            lease=LEASE,
         )
+        made, stack = carrier.build(clk_hz, fragments, self._longest(participant))
         self._switch = PortSwitch((0, 0, 0))
         self._loader = self._session(participant, identity, info)
         bits = self._steps(ANNOUNCEMENT).bit_length()  # the longest period
@@ -149,16 +154,8 @@ class RosCore(EthernetNode):
             name for name in members if name.startswith(("publish", "receive")) or name in NODE
         ]
         super().__init__(
-            Mac(phy),
-            UdpStack(
-                round(clk_hz),
-                groups=1,
-                cache_width=cache_width,
-                echo_data=self._payloads - icmp.SIZE,
-                fragments=fragments,
-                fragment_size=FRAGMENT,
-            ),
-            clk_hz,
+            made,
+            stack,
             {"udp": self._switch, "rtps": participant},
             {name: members[name] for name in self._user_ports},
             counters,
@@ -174,6 +171,12 @@ class RosCore(EthernetNode):
         found = [at + n // 4 + last for n in range(0, len(info), 4) if info[n:].startswith(prefix)]
         places = [own.own(tables.OWN_PREFIX) + last, *found]
         return Loader([(place, 0, False) for place in places], 1, own.address_bits, 1)
+
+    def _longest(self, participant: Participant) -> int:
+        """Octets of the longest datagram that it sends: a template, and a message."""
+        own = participant.own_map
+        words = max(Rom(own, self.identity.domain, LEASE).size.values())
+        return 4 * (words + max(local.words for local in own.writers))
 
     def _steps(self, seconds: float) -> int:
         """So many steps of `Periods`."""
@@ -200,10 +203,7 @@ class RosCore(EthernetNode):
         m.d.comb += [
             stack.groups[0].valid.eq(1),
             stack.groups[0].ip.eq(number(locator.SPDP_MULTICAST_ADDRESS)),
-            stack.retry_count.eq(ARP_TRIES),
-            stack.retry_interval.eq(round(self._clk_hz * ARP_INTERVAL)),
-            stack.timeout.eq(round(self._clk_hz * ARP_TIMEOUT)),
-            stack.expiration.eq(round(self._clk_hz * FRAGMENT_EXPIRATION)),
+            *(getattr(stack, name).eq(value) for name, value in self._settings.items()),
             periods.enable.eq(running),
             periods.prescaler_div.eq(STEP),
             periods.announcement.eq(self._steps(ANNOUNCEMENT)),
@@ -215,7 +215,8 @@ class RosCore(EthernetNode):
         ]
         expose(m, rtps, self, self._user_ports)
         self._begin(m, running)
-        self._memory(m)
+        if self._fragments > 1:
+            self._memory(m)
 
     def _begin(self, m: Module, running: Signal) -> None:
         """`running` from when the number of the session is known and written."""
@@ -225,7 +226,7 @@ class RosCore(EthernetNode):
         session = Signal(32)
         silence = Signal(range(round(self._clk_hz * SILENCE) + 1))
         m.d.sync += [cycles.eq(cycles + 1), running.eq(loader.done)]
-        with m.If(self.phy_rst_n & ~loader.enable):
+        with m.If(self._link.up & ~loader.enable):
             m.d.sync += [session.eq(cycles), silence.eq(silence + 1)]
             came = rx.valid & rx.ready & rx.payload.end & ~rx.payload.bad
             with m.If(came | (silence == round(self._clk_hz * SILENCE))):
@@ -235,6 +236,7 @@ class RosCore(EthernetNode):
 
     def _memory(self, m: Module) -> None:
         """Where fragments wait."""
+        m.d.comb += self._stack.expiration.eq(round(self._clk_hz * FRAGMENT_EXPIRATION))
         port = self._stack.ip_payloadsmem
         m.submodules.payloads = payloads = memory.Memory(shape=8, depth=self._payloads, init=[])
         read, write = payloads.read_port(), payloads.write_port()
