@@ -265,25 +265,25 @@ def test_endpoints_that_match_get_a_proxy(e: str, stalls: int) -> None:
     Node(stalls=stalls).run(script)
 
 
-OURS = hand.locator("239.255.0.1", GROUP_PORT + 1)
+LISTENS = hand.locator("239.255.0.1", GROUP_PORT + 1)
 
 
 @pytest.mark.parametrize(
     ("participant", "endpoint_", "in_group"),
     [
         ([], [], False),
-        ([(0x48, OURS)], [], True),
-        ([], [(0x30, OURS)], True),
+        ([(0x48, LISTENS)], [], True),
+        ([], [(0x30, LISTENS)], True),
         ([(0x48, hand.locator("239.255.0.1", GROUP_PORT))], [], False),  # that is discovery's port
         ([(0x48, hand.locator("239.255.0.2", GROUP_PORT + 1))], [], False),
-        ([(0x48, hand.locator("239.255.0.2", GROUP_PORT + 1)), (0x48, OURS)], [], True),
+        ([(0x48, hand.locator("239.255.0.2", GROUP_PORT + 1)), (0x48, LISTENS)], [], True),
         # With a locator of its own, what holds by default does not.
-        ([(0x48, OURS)], [(0x2F, hand.locator("10.0.0.9", 1234))], False),
-        ([], [(0x2F, hand.locator("10.0.0.9", 1234)), (0x30, OURS)], True),
+        ([(0x48, LISTENS)], [(0x2F, hand.locator("10.0.0.9", 1234))], False),
+        ([], [(0x2F, hand.locator("10.0.0.9", 1234)), (0x30, LISTENS)], True),
         # Behind the gateway our group is not heard.
-        ([(0x31, hand.locator("172.16.0.9", 7411)), (0x48, OURS)], [], False),
-        ([(0x31, hand.locator("172.16.0.9", 7411))], [(0x30, OURS)], False),
-        ([], [(0x30, OURS), (0x2F, hand.locator("172.16.0.9", 1234))], False),
+        ([(0x31, hand.locator("172.16.0.9", 7411)), (0x48, LISTENS)], [], False),
+        ([(0x31, hand.locator("172.16.0.9", 7411))], [(0x30, LISTENS)], False),
+        ([], [(0x30, LISTENS), (0x2F, hand.locator("172.16.0.9", 1234))], False),
     ],
 )
 @pytest.mark.parametrize("e", "<>")
@@ -291,7 +291,7 @@ def test_who_listens_to_the_group_within_our_subnet_may_get_messages_there(
     e: str, participant: list[tuple[int, bytes]], endpoint_: list[tuple[int, bytes]], in_group: bool
 ) -> None:
     def swapped(octets: bytes) -> bytes:  # kind and port are numbers
-        return octets if e == "<" else octets[3::-1] + octets[7:3:-1] + octets[8:]
+        return octets if e == "<" else octets[:4][::-1] + octets[4:8][::-1] + octets[8:]
 
     def said(parameters: list[tuple[int, bytes]]) -> list[bytes]:
         return [hand.parameter(pid, swapped(octets), e) for pid, octets in parameters]

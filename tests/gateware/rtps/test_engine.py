@@ -6,13 +6,13 @@ from typing import Any
 
 import pytest
 
-from engine.rtps.network import RELIABLE
+from engine.rtps.network import GROUP, RELIABLE
 from gateware.rtps.counter_node import FACTOR, TYPE, Running
 from roslet.engine.rtps import events
 from roslet.sim.link import Faults, Link
 from roslet.sim.wire import Wire
 from roslet.wire.rtps import locator
-from sim.test_wire import GROUP, ParticipantStation
+from sim.test_wire import ParticipantStation
 
 pytestmark = pytest.mark.timeout(400)  # the design is compiled
 
