@@ -49,16 +49,20 @@ class CutParameters(wiring.Component):
                 "own": Out(ReadSignature(own.address_bits)),
                 "write": Out(WriteSignature(peers.address_bits)),
                 "addresses": In(ADDRESSES),
+                "group_port": In(16),
                 "domain": In(8),
                 "done": Out(1),
                 "proceed": In(1),
                 "read": Out(READ),
                 "same": Out(1 << own.local_bits),
+                "near": Out(1),
+                "listens": Out(1),
                 "drop_malformed": Out(1),
             }
         )
         self.takes = Signal()
-        write, given = self.write, (self.done, self.read, self.same, self.drop_malformed, self.takes)
+        write = self.write
+        given = self.done, self.read, self.same, self.near, self.listens, self.drop_malformed, self.takes
         addresses = self.peers.addr, self.own.addr, write.addr, write.data, write.en
         self.free = [Value.cast(value) for value in (*given, *addresses)]
 
