@@ -38,7 +38,9 @@ def _drop_unread(pieces: Sequence[ast.Module], program: ast.Module) -> None:
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
     }
     for piece in pieces:
-        piece.body = [one for one in piece.body if _prepares(one) is None or _prepares(one) in read] or [ast.Pass()]
+        piece.body = [one for one in piece.body if _prepares(one) is None or _prepares(one) in read] or [
+            ast.Pass()
+        ]
 
 
 def _prepares(statement: ast.stmt) -> str | None:

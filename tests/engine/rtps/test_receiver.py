@@ -208,10 +208,10 @@ def test_shells_that_use_their_memory_again_carry_the_same_samples() -> None:
 
 
 def test_discovery_from_nobody_knows_where_is_not_believed() -> None:
-    network, one, other, _, _ = quiet_pair()
+    network, _one, other, _, _ = quiet_pair()
     assert network.run(10.0, lambda: bool(network.seen) or setattr(network, "keep", True))
     room = memoryview(bytearray(1500))
-    announcement = [datagram for datagram in network.seen if b"\x00\x01\x00\xc2" in datagram][0]
+    announcement = next(datagram for datagram in network.seen if b"\x00\x01\x00\xc2" in datagram)
     room[: len(announcement)] = announcement
     before = dict(other.participant.counters)
     other.participant.receive_again(room, len(announcement), network.now)
