@@ -191,7 +191,7 @@ def test_shells_that_use_their_memory_again_carry_the_same_samples() -> None:
         for address in addresses:
             network._send(one, bytes(front) + bytes(rest), address)
 
-    other.participant.receive_datagram = receive  # type: ignore[method-assign]
+    other.participant.receive_datagram = receive
     one.participant.outbox.at_once = send
     reader.sink = lambda proxy, value, time: got.append(bytes(value.payload))
     buffer = bytearray(12)
@@ -209,7 +209,8 @@ def test_shells_that_use_their_memory_again_carry_the_same_samples() -> None:
 
 def test_discovery_from_nobody_knows_where_is_not_believed() -> None:
     network, _one, other, _, _ = quiet_pair()
-    assert network.run(10.0, lambda: bool(network.seen) or setattr(network, "keep", True))
+    network.keep = True
+    assert network.run(10.0, lambda: bool(network.seen))
     room = memoryview(bytearray(1500))
     announcement = next(datagram for datagram in network.seen if b"\x00\x01\x00\xc2" in datagram)
     room[: len(announcement)] = announcement

@@ -57,8 +57,8 @@ def evaluate(arguments: argparse.Namespace) -> int:
         own = [stacks.of_user(text) for text in arguments.echo]
     except ValueError as error:
         raise CommandError(str(error), USAGE) from None
-    for path in (arguments.gates, arguments.sizes_of):
-        _json(path)
+    sizes_given = [size.given(_json(path)) for path in arguments.sizes_of]
+    _json(arguments.gates)
     found, absent = stacks.peers(arguments.stacks, note)
     ours = [stack for stack in stacks.ours() if stacks.wanted(stack.name, arguments.stacks)]
     result: dict[str, Any] = {"problems": []}
@@ -85,7 +85,7 @@ def evaluate(arguments: argparse.Namespace) -> int:
             result["problems"] += result["porting"]["problems"]
     if "size" in parts:
         memory = result["rtt"]["memory"] if "rtt" in result else {}
-        result["size"] = size.measure(memory, sizes_of_boards, _json(arguments.sizes_of))
+        result["size"] = size.measure(memory, sizes_of_boards, *sizes_given)
     if arguments.gates:
         result["gates"] = _json(arguments.gates)["echo"]
     folder = pathlib.Path(arguments.output)
