@@ -90,14 +90,14 @@ def test_a_ros1_echo_in_160_kb_takes_no_more_with_time(tmp_path: pathlib.Path) -
         master.stop()
 
 
-@pytest.mark.parametrize("rosout", [False, True])
-def test_a_ros2_echo_with_four_peers_in_256_kb_takes_no_more_with_time(
-    tmp_path: pathlib.Path, rosout: bool
+@pytest.mark.parametrize(("heap", "rosout"), [("256k", False), ("272k", True)])
+def test_a_ros2_echo_with_four_peers_takes_no_more_with_time(
+    tmp_path: pathlib.Path, heap: str, rosout: bool
 ) -> None:
     made = echo("ros2", tmp_path, rosout)
     with Namespace(tmp_path) as namespace:
         path = {"PYTHONPATH": str(peers.ROOT / "src")}
-        board = namespace.start(*boards.command(made, "256k"), name="board")
+        board = namespace.start(*boards.command(made, heap), name="board")
         board.wait_for("ready")
         for number in range(3):
             one = namespace.start(

@@ -28,6 +28,8 @@ MAX_PARTICIPANT_ID = 119
 _WRITES, _READS = 1, 2
 # Octets around a sample in a datagram, and behind it, at most as nearly all peers send them.
 AROUND = 256
+# Seconds after which a sample is read with its source again, which renews its participant's lease.
+WITH_SOURCE = 1.0
 
 
 class Domain:
@@ -50,6 +52,7 @@ class Domain:
         self._room = memoryview(bytearray(sockets.USUAL))
         self._bounded = True
         self._reading = False  # whether somebody may be looking at what lies there
+        self._with_source = 0.0  # when the next is read with its source
         self._meta, self._user, self.participant_id = self._bind()
         # Of `interface=` only addresses are known here.
         found = list(network.interfaces) or sockets.own_addresses()
@@ -180,9 +183,11 @@ class Domain:
             self._room = memoryview(bytearray(size + AROUND))
 
     def _read_samples(self, events: int) -> None:
-        """Without asking where from, which would be garbage; and what is like an earlier one is told by windows on the room.
+        """Mostly without asking where from, which is garbage; what is like an earlier one is told by windows on the room.
         (`readinto` takes no datagram but all that wait, as one; so one is copied.)"""
-        if self._reading or not self._bounded:
+        now = self.loop.now()
+        if self._reading or not self._bounded or now >= self._with_source:
+            self._with_source = now + WITH_SOURCE
             self._read(self._user)
             return
         room = self._room
@@ -197,7 +202,7 @@ class Domain:
         room[:count] = data
         self._reading = True
         try:
-            self.participant.receive_again(room, count, self.loop.now())
+            self.participant.receive_again(room, count, now)
         finally:
             self._reading = False
         if count == len(room) < self._datagram:
