@@ -24,6 +24,7 @@ from roslet.cli.bench import (
     porting,
     report,
     rtt,
+    size,
     stacks,
     tables,
     validity,
@@ -173,6 +174,25 @@ def test_the_page_needs_nothing_else_and_says_what_was_wrong(tmp_path: pathlib.P
     assert all(path.is_file() for path in paths)
 
 
+def test_a_design_has_its_luts_beside_the_sections_of_programs() -> None:
+    built = {
+        "design": "typed-echo",
+        "device": "ECP5",
+        "luts": {"total": 9452, "logic": 7556},
+        "flip_flops": 4751,
+    }
+    assert size.given({"sections": {}}) == {"sections": {}}
+    assert size.given(built) == {"gates": {"typed-echo in gates, ECP5": 9452}}
+    found = size.measure({}, {"sections": {"a board": [1000, 20, 3]}}, size.given(built))
+    table = tables.size({"size": found})[0]
+    assert table.headings == ["", "text", "data", "bss", "all", "LUT4"]
+    assert ["a board", "1,000", "20", "3", "1,023", "-"] in table.rows
+    assert ["typed-echo in gates, ECP5", "-", "-", "-", "-", "9,452"] in table.rows
+    assert all(len(row) == 6 for row in table.rows)
+    without = tables.size({"size": size.measure({}, {"sections": {"a board": [1000, 20, 3]}})})[0]
+    assert "LUT4" not in without.headings and ["a board", "1,000", "20", "3", "1,023"] in without.rows
+
+
 # -- the command
 
 
@@ -214,8 +234,22 @@ def test_the_peers_that_are_installed_answer(run: Run, tmp_path: pathlib.Path) -
         *("roscpp", "rospy", "rclpy", "rclpy, UDP only", "cyclonedds"),
     }
     for name, cases in found["rtt"]["figures"].items():
+        assert cases["coordinate"]["count"] == 3 and cases["coordinate"]["lost"] == 0, name
         assert cases["1024"]["count"] == 3 and cases["1024"]["lost"] == 0, name
     assert {*board.NAMES.values(), "libroscpp-dev", "cyclonedds"} <= set(found["size"]["installed"])
+
+
+def test_every_value_comes_back_from_micropython(run: Run, tmp_path: pathlib.Path) -> None:
+    peers.require("micropython")
+    outcome = run(
+        "bench", "--quick", "--only", "validity", "--stacks", "MicroPython", "--output", tmp_path, "--json",
+    )  # fmt: skip
+    assert outcome.code == 0, outcome.err
+    found = json.loads(outcome.out)["validity"]
+    assert found["problems"] == [] and list(found["peers"]) == list(board.NAMES.values())
+    for rows in found["peers"].values():
+        assert {name.split("/")[1] for name in rows} == set(validity.QUICK)
+        assert all(right.split(" of ")[0] == right.split(" of ")[1] != "0" for right in rows.values())
 
 
 def test_what_is_missing_for_micropython_is_said(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -20,7 +20,38 @@ def trim(pieces: Sequence[ast.Module], program: ast.Module) -> None:
         stores = _DeadStores([*pieces, program])
         for piece in pieces:
             stores.visit(piece)
+    for _ in range(3):  # what was prepared for nobody may have been all that a function was for
+        _drop_unread(pieces, program)
     _inline([*pieces, program])
+
+
+# What makes functions of formats, and does nothing else.
+_PREPARING = ("bytes_packer", "number_packers", "packer", "text_bytes_packers", "unpacker")
+
+
+def _drop_unread(pieces: Sequence[ast.Module], program: ast.Module) -> None:
+    """Take out what is prepared for methods that are not there: `_make0 = bytes_packer("<I")`."""
+    read = {
+        node.id
+        for tree in [*pieces, program]
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
+    }
+    for piece in pieces:
+        piece.body = [one for one in piece.body if _prepares(one) is None or _prepares(one) in read] or [
+            ast.Pass()
+        ]
+
+
+def _prepares(statement: ast.stmt) -> str | None:
+    """The name that a statement defines, if that is one of those functions, or what one of them makes."""
+    if isinstance(statement, ast.FunctionDef) and statement.name in _PREPARING:
+        return statement.name
+    if isinstance(statement, ast.Assign) and isinstance(statement.value, ast.Call):
+        target, made = statement.targets[0], statement.value.func
+        if isinstance(target, ast.Name) and isinstance(made, ast.Name) and made.id in _PREPARING:
+            return target.id
+    return None
 
 
 class _Terse(ast.NodeTransformer):

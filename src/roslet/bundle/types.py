@@ -248,4 +248,45 @@ def _short(module: str, exact: bool, sent: bool) -> str:
                 node.body = [
                     one for one in node.body if not (isinstance(one, ast.Assign) and len(one.targets) == 2)
                 ]
-    return ast.unparse(tree)
+    return ast.unparse(ast.fix_missing_locations(_direct(tree)))
+
+
+def _direct(tree: ast.Module) -> ast.Module:
+    """Call `struct` itself where CPython has prepared functions: MicroPython would make a tuple of what they are given. Not
+    where there is padding, which it does not write."""
+    functions = {"_packer": "pack_into", "_unpacker": "unpack_from"}
+    found: dict[str, tuple[str, ast.Constant]] = {}
+    for statement in tree.body:
+        if isinstance(statement, ast.Assign) and isinstance(statement.value, ast.Call):
+            target, made = statement.targets[0], statement.value
+            form = made.args[0] if made.args else None
+            if (
+                isinstance(target, ast.Name)
+                and isinstance(made.func, ast.Name)
+                and made.func.id in functions
+                and isinstance(form, ast.Constant)
+                and "x" not in str(form.value)
+            ):
+                found[target.id] = functions[made.func.id], form
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in found:
+            name, form = found[node.func.id]
+            node.func = ast.Name(name, ast.Load())
+            node.args.insert(0, form)
+    left = {
+        node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
+    }
+    tree.body = [
+        one
+        for one in tree.body
+        if not (
+            isinstance(one, ast.Assign)
+            and isinstance(one.targets[0], ast.Name)
+            and one.targets[0].id in found
+            and one.targets[0].id not in left
+        )
+    ]
+    used = sorted({name for name, _ in found.values()})
+    if used:
+        tree.body.insert(0, ast.ImportFrom("struct", [ast.alias(name) for name in used], 0))
+    return tree

@@ -33,30 +33,34 @@ MAX_TABLE = 1024
 """Formats that one table of string lengths keeps; what is beyond is made anew each time."""
 
 
-class _Table(dict):  # type: ignore[type-arg]
-    """Functions of one format with a string in it, by the string's length; made when first asked for."""
+if CPYTHON:
 
-    def __init__(self, make: "Callable[[int], Callable[..., Any]]") -> None:
-        self.make = make
+    class _Table(dict):  # type: ignore[type-arg]
+        """Functions of one format with a string in it, by the string's length; made when first asked for."""
 
-    def __missing__(self, key: int) -> "Callable[..., Any]":
-        made = self.make(key)
-        if len(self) < MAX_TABLE:
-            self[key] = made
-        return made
+        def __init__(self, make: "Callable[[int], Callable[..., Any]]") -> None:
+            self.make = make
 
+        def __missing__(self, key: int) -> "Callable[..., Any]":
+            made = self.make(key)
+            if len(self) < MAX_TABLE:
+                self[key] = made
+            return made
 
-class _Maker:
-    """The same for MicroPython, whose dict calls no `__missing__`: nothing is kept, and little is made."""
+    _by_length: "Any" = _Table
 
-    def __init__(self, make: "Callable[[int], Callable[..., Any]]") -> None:
-        self.make = make
+else:
 
-    def __getitem__(self, key: int) -> "Callable[..., Any]":
-        return self.make(key)
+    class _Maker:
+        """The same for MicroPython, whose dict calls no `__missing__`: nothing is kept, and little is made."""
 
+        def __init__(self, make: "Callable[[int], Callable[..., Any]]") -> None:
+            self.make = make
 
-_by_length: "Any" = _Table if CPYTHON else _Maker
+        def __getitem__(self, key: int) -> "Callable[..., Any]":
+            return self.make(key)
+
+    _by_length = _Maker
 
 
 def text_packers(head: str, tail: str, terminator: int) -> "Any":
@@ -119,6 +123,12 @@ if CPYTHON:
     def unpacker(form: str) -> "Callable[..., tuple[Any, ...]]":
         """`unpack_from` of one format: call it with buffer, offset."""
         return struct.Struct(form).unpack_from
+
+    _UINT32 = unpacker("<I")
+
+    def uint32(buffer: "bytes | bytearray | memoryview", at: int) -> int:
+        """The number in four octets, the lowest first; of MicroPython's heap it takes nothing."""
+        return _UINT32(buffer, at)[0]  # type: ignore[no-any-return]
 
     def decode(data: "bytes | bytearray | memoryview") -> str:
         """UTF-8; a byte that is none becomes a lone surrogate, so that encoding gives it back."""
@@ -190,6 +200,9 @@ else:
 
             found = _unpackers[form] = unpack
         return found
+
+    def uint32(buffer: "bytes | bytearray | memoryview", at: int) -> int:
+        return buffer[at] | buffer[at + 1] << 8 | buffer[at + 2] << 16 | buffer[at + 3] << 24
 
     def decode(data: "bytes | bytearray | memoryview") -> str:
         """UTF-8; a byte that is none becomes a question mark: MicroPython's str holds nothing else."""

@@ -1,5 +1,7 @@
 """What a message says about itself: who sent it, for whom, where replies go. RTPS 2.3, 8.3.4, 8.3.7."""
 
+import sys
+
 import pytest
 
 from engine.rtps.network import GROUP, RELIABLE, Network, body, matched, numbers, pair
@@ -21,6 +23,8 @@ pytestmark = pytest.mark.micropython
 
 ELSEWHERE = locator.udp4("10.9.9.9", 1234)
 NOBODY = b"\1\2" + bytes(10)
+# What loss and repetition make be counted.
+USUAL = ("sample-repeated", "heartbeat-repeated", "acknack-repeated", "discovery-from-another-address")
 
 
 def quiet_pair() -> "Any":
@@ -166,3 +170,51 @@ def test_readers_that_share_a_multicast_locator_are_reached_by_one_datagram() ->
     assert network.run(20, lambda: len(writer.proxies) == 2)
     # One reader alone is as well reached by unicast.
     assert set(writer.addresses) == {(hosts[1].address, 7411), (hosts[2].address, 7411)}
+
+
+def test_shells_that_use_their_memory_again_carry_the_same_samples() -> None:
+    """One receives into one buffer without asking where from, the other sends small samples at once and keeps them where
+    acknowledged ones were, on MicroPython; under loss, so that what was kept is sent again."""
+    network = Network(7, loss=0.1, twice=0.05, late=0.1)
+    one, other, writer, reader = pair(network, RELIABLE, RELIABLE)
+    assert matched(network, writer, reader)
+    room = memoryview(bytearray(1500))
+    got: list[bytes] = []
+    at_once: list[int] = []
+
+    def receive(datagram: bytes, source: "Any", now: float) -> None:
+        room[: len(datagram)] = datagram
+        other.participant.receive_again(room, len(datagram), now)
+
+    def send(front: "Any", rest: "Any", addresses: "Any") -> None:
+        at_once.append(len(rest))
+        for address in addresses:
+            network._send(one, bytes(front) + bytes(rest), address)
+
+    other.participant.receive_datagram = receive
+    one.participant.outbox.at_once = send
+    reader.sink = lambda proxy, value, time: got.append(bytes(value.payload))
+    buffer = bytearray(12)
+    for number in range(400):
+        buffer[:] = body(number)
+        writer.write(memoryview(buffer), network.now)
+        buffer[:] = bytes(12)
+        network.run(0.002)
+    assert network.run(5.0, lambda: writer.acknowledged(400))
+    assert got == [body(number) for number in range(400)]
+    assert bool(at_once) == (sys.implementation.name == "micropython")
+    left = [reason for reason in other.participant.counters if reason not in USUAL]
+    assert left == [], other.participant.counters
+
+
+def test_discovery_from_nobody_knows_where_is_not_believed() -> None:
+    network, _one, other, _, _ = quiet_pair()
+    network.keep = True
+    assert network.run(10.0, lambda: bool(network.seen))
+    room = memoryview(bytearray(1500))
+    announcement = next(datagram for datagram in network.seen if b"\x00\x01\x00\xc2" in datagram)
+    room[: len(announcement)] = announcement
+    before = dict(other.participant.counters)
+    other.participant.receive_again(room, len(announcement), network.now)
+    assert before.get("discovery-from-another-address", 0) == 0
+    assert other.participant.counters["discovery-from-another-address"] == 1

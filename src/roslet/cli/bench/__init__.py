@@ -55,8 +55,10 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--sizes-of",
+        action="append",
+        default=[],
         metavar="FILE",
-        help="sections and installed bytes that other commands measured, as JSON (see docs/evaluation.md)",
+        help="what `roslet gateware build --json` printed, or other sizes as JSON (see docs/evaluation.md)",
     )
     parser.add_argument(
         "--output", metavar="DIR", default="roslet-bench", help="where the report goes (default roslet-bench)"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from roslet.bundle import flash, interpreter
 from roslet.bundle.build import build
+from roslet.cli.bench import values
 from roslet.cli.bench.compiled import Absent
 from roslet.cli.bench.stacks import Stack, pinged, wanted
 from roslet.cli.demo.programs import folder
@@ -21,6 +22,9 @@ NAMES: dict[Literal["ros1", "ros2"], str] = {
     "ros1": "roslet on MicroPython, ROS 1",
     "ros2": "roslet on MicroPython, ROS 2",
 }
+MIRROR = PROGRAM.with_name("board_mirror.py")
+MIRROR_HEAP = "16m"
+MIRROR_BOUNDS = {"DATAGRAM": 65507, "CONNECTIONS": 64, "ENDPOINTS": 128}
 HEAP = "512k"
 """A text of 32 KiB is there several times over: as it came, as text, as octets on their way."""
 
@@ -42,6 +46,27 @@ def boards(only: str) -> Iterator[tuple[list[Stack], dict[str, Any]]]:
             what = f"the .mpy of this node, in flash; it has a heap of {HEAP}"
             sizes[NAMES[dialect]] = {"bytes": made.total, "what": what}
         yield stacks, {"installed": sizes}
+
+
+@contextlib.contextmanager
+def mirrors(only: str) -> Iterator[list[Stack]]:
+    """Nodes of the same names in the role `mirror`, for all types of the validity part: with more heap than a board has, and
+    bounds that let an Image come in one datagram. Raises Absent."""
+    chosen = [dialect for dialect, name in NAMES.items() if wanted(name, only)]
+    if chosen:
+        _check()
+    found = []
+    with tempfile.TemporaryDirectory(prefix="roslet-bench-") as where:
+        for dialect in chosen:
+            types = list(values.messages(dialect == "ros1"))
+            definitions = [folder() / "msgs" / "mros_comm_measure"]
+            made = build(
+                MIRROR, Path(where, dialect), dialect,
+                wanted=types, definitions=definitions, bounds=MIRROR_BOUNDS, by_module=False,
+            )  # fmt: skip
+            words = interpreter.command(made, MIRROR_HEAP, True)[0]
+            found.append(pinged(NAMES[dialect], dialect, tuple(words)))
+        yield found
 
 
 def _check() -> None:

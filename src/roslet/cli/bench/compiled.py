@@ -1,4 +1,4 @@
-"""What has to be generated and compiled for the ROS 1 peers, kept in a cache outside the tree."""
+"""What has to be generated and compiled for the peers, kept in a cache outside the tree."""
 
 from __future__ import annotations
 
@@ -78,6 +78,38 @@ def genpy() -> pathlib.Path:
         _run([DEBIAN_PYTHON, GENPY, "--initpy", "-p", "mros_comm_measure", "-o", output], GENPY)
         (package / "__init__.py").touch()
     return path
+
+
+def rclpy_coordinate(python: str, say: Callable[[str], None]) -> pathlib.Path:
+    """A folder for the path of rclpy programs, with the type support of Coordinate, for an environment of wheels, in which
+    `python` is. Compiles it where it is not there yet. Raises Absent."""
+    inside = pathlib.Path(python).parent.parent
+    asked = "import sysconfig; print(sysconfig.get_path('include')); print(sysconfig.get_config_var('EXT_SUFFIX'))"
+    headers, suffix = _run([python, "-c", asked], python).split()
+    _need(
+        f"{inside}/include/fastcdr/Cdr.h",
+        f"{inside}/include/rosidl_typesupport_fastrtps_cpp",
+        f"{headers}/Python.h",
+    )
+    if shutil.which("g++") is None:
+        raise Absent("g++ is missing")
+    source = PROGRAMS / "rclpy_coordinate.cpp"
+    stamp = hashlib.sha256(source.read_bytes() + python.encode()).hexdigest()[:16]
+    path = cache() / stamp / ("rclpy_coordinate" + suffix)
+    if not path.exists():
+        say(f"compiling {source.name}")
+        path.parent.mkdir(exist_ok=True)
+        made = path.with_suffix(f".{os.getpid()}")
+        include = [
+            f"-I{inside}/include",
+            f"-I{headers}",
+            *(f"-I{one}" for one in sorted(inside.glob("include/*/"))),
+        ]
+        link = [f"-L{inside}/lib", "-lfastcdr", f"-Wl,-rpath,{inside}/lib"]
+        flags = ["-O2", "-std=c++17", "-w", "-shared", "-fPIC", *include]
+        _run(["g++", *flags, "-o", str(made), str(source), *link], str(source))
+        made.rename(path)
+    return path.parent
 
 
 def program(name: str, say: Callable[[str], None]) -> pathlib.Path:

@@ -57,12 +57,15 @@ def evaluate(arguments: argparse.Namespace) -> int:
         own = [stacks.of_user(text) for text in arguments.echo]
     except ValueError as error:
         raise CommandError(str(error), USAGE) from None
-    for path in (arguments.gates, arguments.sizes_of):
-        _json(path)
+    sizes_given = [size.given(_json(path)) for path in arguments.sizes_of]
+    _json(arguments.gates)
     found, absent = stacks.peers(arguments.stacks, note)
     ours = [stack for stack in stacks.ours() if stacks.wanted(stack.name, arguments.stacks)]
     result: dict[str, Any] = {"problems": []}
-    with _network() as network, _boards(arguments.stacks, parts, absent) as (boards, sizes_of_boards):
+    with (
+        _network() as network,
+        _boards(arguments.stacks, parts, absent) as (boards, sizes_of_boards, mirrors),
+    ):
         everybody = [*stacks.floors(), *ours, *boards, *found, *own]
         result["about"] = _about(absent)
         if "rtt" in parts:
@@ -71,7 +74,7 @@ def evaluate(arguments: argparse.Namespace) -> int:
             result["problems"] += _lost(result["rtt"])
         if "validity" in parts:
             result["validity"] = validity.measure(
-                validity.peers(everybody, note),
+                [*validity.peers(everybody, note), *mirrors],
                 network,
                 Progress("validity"),
                 validity.QUICK if arguments.quick else (),
@@ -82,7 +85,7 @@ def evaluate(arguments: argparse.Namespace) -> int:
             result["problems"] += result["porting"]["problems"]
     if "size" in parts:
         memory = result["rtt"]["memory"] if "rtt" in result else {}
-        result["size"] = size.measure(memory, sizes_of_boards, _json(arguments.sizes_of))
+        result["size"] = size.measure(memory, sizes_of_boards, *sizes_given)
     if arguments.gates:
         result["gates"] = _json(arguments.gates)["echo"]
     folder = pathlib.Path(arguments.output)
@@ -146,16 +149,21 @@ def _network() -> Any:
 @contextlib.contextmanager
 def _boards(
     only: str, parts: list[str], absent: dict[str, str]
-) -> Iterator[tuple[list[stacks.Stack], dict[str, Any]]]:
-    """Of board.py, for the parts that have a use for them; where they cannot be made, `absent` is told why."""
-    found: tuple[list[stacks.Stack], dict[str, Any]] = [], {}
+) -> Iterator[tuple[list[stacks.Stack], dict[str, Any], list[stacks.Stack]]]:
+    """Of board.py, for the parts that have a use for them: nodes, their sizes, mirrors. Where they cannot be made,
+    `absent` is told why."""
+    found: list[stacks.Stack] = []
+    mirrors: list[stacks.Stack] = []
+    sizes: dict[str, Any] = {}
     with contextlib.ExitStack() as opened:
-        if "rtt" in parts or "size" in parts:
-            try:
-                found = opened.enter_context(board.boards(only))
-            except compiled.Absent as error:
-                absent["MicroPython"] = str(error)
-        yield found
+        try:
+            if "rtt" in parts or "size" in parts:
+                found, sizes = opened.enter_context(board.boards(only))
+            if "validity" in parts:
+                mirrors = opened.enter_context(board.mirrors(only))
+        except compiled.Absent as error:
+            absent["MicroPython"] = str(error)
+        yield found, sizes, mirrors
 
 
 def _about(absent: dict[str, str]) -> dict[str, str]:

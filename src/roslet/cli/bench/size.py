@@ -110,9 +110,16 @@ def sections(program: pathlib.Path) -> tuple[int, int, int] | None:
     return (int(words[0]), int(words[1]), int(words[2])) if words else None
 
 
+def given(found: dict[str, Any]) -> dict[str, Any]:
+    """What `measure` takes, of what somebody else measured: that itself, or what `roslet gateware build --json` printed."""
+    if "luts" not in found:
+        return found
+    return {"gates": {f"{found['design']} in gates, {found['device']}": found["luts"]["total"]}}
+
+
 def measure(memory: dict[str, int], *given: dict[str, Any]) -> dict[str, Any]:
-    """The tables. Each of `given` are sections and installed bytes that others measured: {"sections": {NAME: [TEXT, DATA,
-    BSS]}, "installed": {NAME: {"bytes": N, "what": TEXT}}}."""
+    """The tables. Each of `given` are sizes that others measured: {"sections": {NAME: [TEXT, DATA, BSS]}, "installed":
+    {NAME: {"bytes": N, "what": TEXT}}, "gates": {NAME: LUTS}}, each of which may be absent."""
     installed: dict[str, dict[str, Any]] = {}
     for name, count in rooms(pathlib.Path(roslet.__file__).resolve().parent).items():
         installed[name] = {"bytes": count, "what": "without byte code; nothing else is needed but Python"}
@@ -143,7 +150,9 @@ def measure(memory: dict[str, int], *given: dict[str, Any]) -> dict[str, Any]:
             compiled_sections["roscpp"] = list(roscpp)
     except compiled.Absent:
         pass
+    gates: dict[str, int] = {}
     for one in given:
+        gates.update(one.get("gates", {}))
         installed.update(one.get("installed", {}))
         compiled_sections.update(one.get("sections", {}))
-    return {"installed": installed, "sections": compiled_sections, "memory": memory}
+    return {"installed": installed, "sections": compiled_sections, "memory": memory, "gates": gates}

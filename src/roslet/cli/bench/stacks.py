@@ -59,7 +59,7 @@ class Stack:
     def command(self, role: str, options: Mapping[str, Any]) -> list[str]:
         """The command line that is `role` with its options."""
         words = self.ping if role == "ping" else self.echo
-        if self.foreign and role == "echo":
+        if self.foreign and role != "ping":
             return list(words)
         if role != "mirror" and words[0].endswith("roscpp_node"):
             given = (
@@ -124,8 +124,14 @@ def peers(only: str, say: Any = lambda text: None) -> tuple[list[Stack], dict[st
         absent["rclpy"] = "no interpreter that has it"
     else:
         words = (python, str(PROGRAMS / "rclpy_node.py"))
-        found.append(Stack("rclpy", "ros2", words, words, {}, floor=UDP))
-        only_udp = {"FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
+        coordinate: dict[str, str] = {}
+        try:
+            if wanted("rclpy", only) or wanted("rclpy, UDP only", only):
+                coordinate["BENCH_COORDINATE"] = str(compiled.rclpy_coordinate(python, say))
+        except compiled.Absent as error:
+            say(f"no Coordinate of rclpy: {error}")
+        found.append(Stack("rclpy", "ros2", words, words, coordinate, floor=UDP))
+        only_udp = {"FASTDDS_BUILTIN_TRANSPORTS": "UDPv4", **coordinate}
         found.append(Stack("rclpy, UDP only", "ros2", words, words, only_udp, floor=UDP))
     cyclone = cyclone_python()
     if cyclone is None:

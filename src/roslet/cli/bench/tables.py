@@ -149,17 +149,19 @@ def size(result: dict[str, Any]) -> list[Table]:
     """As the paper's Table 4, for what is comparable here."""
     found = result["size"]
     tables = []
-    if found["sections"]:
-        rows = [
-            [name, *(f"{value:,}" for value in one), f"{sum(one):,}"]
-            for name, one in found["sections"].items()
-        ]
+    if found["sections"] or found["gates"]:
         quoted = {published(name): one for name, one in paper.PROGRAM_BYTES.items()}
-        rows += [[name, *(f"{value:,}" for value in one), f"{sum(one):,}"] for name, one in quoted.items()]
+        luts = ["-"] if found["gates"] else []  # a column only where there is something for it
+        rows = [
+            [name, *(f"{value:,}" for value in one), f"{sum(one):,}", *luts]
+            for name, one in (*found["sections"].items(), *quoted.items())
+        ]
+        at = len(found["sections"])
+        rows[at:at] = [[name, *("-" * 4), f"{number:,}"] for name, number in found["gates"].items()]
         tables.append(
             Table(
                 "Echo node as a program, bytes (the paper's Table 4)",
-                ["", "text", "data", "bss", "all"],
+                ["", "text", "data", "bss", "all", *(["LUT4"] if luts else [])],
                 rows,
                 "The roscpp program is linked with shared libraries, which are not in this; the paper's hold their system.",
                 frozenset(quoted),

@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import json
 import re
+import signal
+import struct
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -36,7 +39,9 @@ class Mirror:
     def __init__(self, stack: stacks.Stack, network: stacks.Network, types: Sequence[str]) -> None:
         self.printed = stack.name == ROSCPP
         command = [*stack.echo, *types] if self.printed else stack.command("mirror", {"types": list(types)})
-        self.process = Process(stack.name, command, stack.environment(network))
+        stop = signal.SIGTERM if stack.foreign else None
+        variables = stack.environment(network, BENCH_MIRROR=json.dumps(list(types)))
+        self.process = Process(stack.name, command, variables, stop)
         self.lacking: set[int] = set()
 
     def ready(self) -> None:
@@ -53,7 +58,7 @@ class Mirror:
         while True:
             fact = self._fact(seconds)
             if fact.get("type") == number:
-                return list(fact["values"])
+                return [_value(one) for one in fact["values"]]
 
     def _fact(self, seconds: float) -> dict[str, Any]:
         if not self.printed:
@@ -70,6 +75,11 @@ class Mirror:
             if leaf is not None and leaf.group(1):
                 found.append(leaf.group(1))
         return {"type": int(rest), "values": found}
+
+
+def _value(told: Any) -> Any:
+    """A value as a program told it: {"float": its eight octets} where its own texts of floats are not exact."""
+    return struct.unpack(">d", bytes.fromhex(told["float"]))[0] if isinstance(told, dict) else told
 
 
 def peers(found: Sequence[stacks.Stack], say: Callable[[str], None]) -> list[stacks.Stack]:

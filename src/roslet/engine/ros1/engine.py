@@ -75,6 +75,9 @@ class Engine:
         self.tcpros_port = 0
         self.publications: dict[str, Publication] = {}
         self.subscriptions: dict[str, list[Subscription]] = {}
+        # The same as lists, which are looked through at each turn; views of dicts would be garbage on MicroPython.
+        self._talking: list[Publication] = []
+        self._listening: list[Subscription] = []
         self.services: dict[str, ServiceOffer] = {}
         self.registrations = Registrations(self)
         self.slave = Slave(self)
@@ -123,13 +126,17 @@ class Engine:
         """The machine has something to send, or wants to close."""
         self._touched.append(machine)
 
-    def take_connections(self) -> "list[Machine | RpcClient]":
+    def take_connections(self) -> "list[Machine | RpcClient] | tuple[()]":
+        if not self._new and not self._master.wants_connection:
+            return ()
         machines, self._new = self._new, []
         if self._master.wants_connection and self._master not in machines:
             machines.append(self._master)
         return machines
 
-    def take_touched(self) -> "list[Machine | RpcClient]":
+    def take_touched(self) -> "list[Machine | RpcClient] | tuple[()]":
+        if not self._touched:
+            return ()
         machines, self._touched = self._touched, []
         return machines
 
@@ -157,12 +164,11 @@ class Engine:
 
     def deadline(self) -> "float | None":
         soonest = self.registrations.deadline()
-        for entries in self.subscriptions.values():
-            for subscription in entries:
-                when = subscription.deadline()
-                if when is not None and (soonest is None or when < soonest):
-                    soonest = when
-        for publication in self.publications.values():
+        for subscription in self._listening:
+            when = subscription.deadline()
+            if when is not None and (soonest is None or when < soonest):
+                soonest = when
+        for publication in self._talking:
             for sender in publication.senders:
                 when = sender.deadline()
                 if when is not None and (soonest is None or when < soonest):
@@ -261,12 +267,14 @@ class Engine:
             raise RosletError("%s already publishes %s" % (self.name, topic))
         publication = Publication(self, topic, type_name, md5sum, definition, latching, depth)
         self.publications[topic] = publication
+        self._talking.append(publication)
         self.registrations.add(publication, now)
         return publication
 
     def unadvertise(self, publication: Publication, now: float) -> None:
         if self.publications.get(publication.topic) is publication:
             del self.publications[publication.topic]
+            self._talking.remove(publication)
             self.registrations.remove(publication, now)
             publication.close()
 
@@ -288,6 +296,7 @@ class Engine:
             self, topic, type_name, md5sum, definition, sink, max_frame, transport, copies, background
         )
         self.subscriptions.setdefault(topic, []).append(subscription)
+        self._listening.append(subscription)
         self.registrations.add(subscription, now)
         return subscription
 
@@ -296,6 +305,7 @@ class Engine:
         if subscription not in entries:
             return
         entries.remove(subscription)
+        self._listening.remove(subscription)
         subscription.close()
         if entries:
             self.registrations.entries.pop(subscription, None)  # the master keeps the topic for the others

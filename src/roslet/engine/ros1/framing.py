@@ -9,9 +9,8 @@ what it costs us. After delivery such a buffer serves the next large frame unles
 belongs to whoever holds the view.
 """
 
-from struct import unpack_from
-
 from roslet.errors import ProtocolError
+from roslet.wire.primitives import uint32
 from roslet.wire.tcpros import MAX_FRAME
 
 TYPE_CHECKING = False
@@ -86,7 +85,7 @@ class FrameReceiver:
         if large is None:
             if not self._chunk_view:
                 self._chunk_view = memoryview(bytearray(self._chunk_size))
-            return self._chunk_view[self._end :]
+            return self._chunk_view[self._end :] if self._end else self._chunk_view
         if self._large_end == len(large):
             grown = bytearray(min(self._large_size, 2 * len(large)))
             grown[: self._large_end] = large
@@ -106,7 +105,7 @@ class FrameReceiver:
         head = self._head
         try:
             while end - start >= head:
-                size = unpack_from("<I", view, start + head - 4)[0]
+                size = uint32(view, start + head - 4)
                 body = start + head
                 if size > end - body:
                     if size > self.maximum:

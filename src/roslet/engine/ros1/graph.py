@@ -290,7 +290,7 @@ class Subscription:
 
     def deadline(self) -> "float | None":
         soonest = self._recheck
-        for when, _ in self._retry.values():
+        for when, _ in self._retry.values() if self._retry else ():
             if when != ASKED_AGAIN and (soonest is None or when < soonest):
                 soonest = when
         return soonest

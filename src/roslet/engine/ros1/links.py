@@ -93,6 +93,8 @@ class Machine:
         raise NotImplementedError
 
     def data_to_send(self) -> bytes:
+        if not self._outgoing:
+            return b""
         data = b"".join(self._outgoing)
         self._outgoing = []
         return data

@@ -1,6 +1,7 @@
 """What a writer keeps: changes by sequence number. RTPS 2.3, 8.2.2 (HistoryCache); DDS 1.4, 2.2.3.18, 2.2.3.19."""
 
 from roslet.errors import RosletError
+from roslet.wire.primitives import CPYTHON
 from roslet.wire.rtps.data import FLAG_D
 from roslet.wire.rtps.qos import KEEP_ALL
 
@@ -12,6 +13,9 @@ if TYPE_CHECKING:
 # machine's memory.
 DEFAULT_SAMPLES = 4096
 DEFAULT_BYTES = 256 << 20
+# Where heap is short: small samples that were kept, and are used again.
+MAX_SPARES = 16
+SPARE_BYTES = 256
 
 
 class HistoryFull(RosletError):
@@ -27,7 +31,7 @@ class Change:
     def __init__(
         self,
         sequence: int,
-        payload: bytes,
+        payload: "bytes | bytearray",
         inline_qos: bytes,
         flags: int,
         time: int,
@@ -69,6 +73,7 @@ class History:
         self._counts = an_instance > 0  # whether KEEP_ALL must know how many an instance has
         self._first = 1  # no change below this is held
         self._ended = 0  # ends of instances among the changes
+        self._spares: list[Change] = []  # only where heap is short
 
     def __len__(self) -> int:
         return len(self._changes)
@@ -112,6 +117,29 @@ class History:
             ) > 1:
                 self.remove(self.first(0))
 
+    def spare(
+        self,
+        sequence: int,
+        payload: "bytes | bytearray | memoryview",
+        time: int,
+        fragment: int,
+        again: bool,
+    ) -> "Change | None":
+        """A change of data with no more to say, where heap is short: with `again` one that was removed, in the same memory,
+        so nothing may be left that looks at it. None where it is too large for that."""
+        size = len(payload)
+        if size > SPARE_BYTES:
+            return None
+        while again and self._spares:
+            change = self._spares.pop()
+            if len(change.payload) == size and isinstance(change.payload, bytearray):
+                change.payload[:] = payload
+                change.sequence = sequence
+                change.time = time
+                change.fragment = fragment
+                return change
+        return Change(sequence, bytearray(payload), b"", FLAG_D, time, b"", b"", fragment)
+
     def get(self, sequence: int) -> "Change | None":
         return self._changes.get(sequence)
 
@@ -123,6 +151,8 @@ class History:
         self.bytes -= len(change.payload)
         if not change.flags & FLAG_D:
             self._ended -= 1
+        if not CPYTHON and isinstance(change.payload, bytearray) and len(self._spares) < MAX_SPARES:
+            self._spares.append(change)
         numbers = self._instances.get(change.key)
         if numbers is not None:
             numbers.remove(sequence)

@@ -6,7 +6,8 @@ everybody acknowledges, and nobody a part of a sample, so does time, at a pace t
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator, Sequence
+    from typing import Any
 
     Address = tuple[str, int]
     Parts = tuple[bytes | bytearray | memoryview, ...]
@@ -31,9 +32,11 @@ WHOLE = 1 << 32
 
 
 class Outbox:
-    """`send` is for what goes out with the next `take`."""
+    """`send` is for what goes out with the next `take`. `at_once(front, rest, addresses)`, where the shell has it, sends a
+    small datagram of two parts while it is called: no queue need be made for that."""
 
     def __init__(self) -> None:
+        self.at_once: Callable[[bytes | bytearray, Any, tuple[Address, ...]], None] | None = None
         self._urgent: list[Datagram] = []
         self._flows: list[Flow] = []
 
@@ -42,13 +45,20 @@ class Outbox:
         if addresses:
             self._urgent.append((parts, addresses))
 
+    @property
+    def idle(self) -> bool:
+        """Whether nothing waits to be sent."""
+        return not self._urgent and not self._flows
+
     def activate(self, flow: "Flow") -> None:
         """It has something to send."""
         if flow not in self._flows:
             self._flows.append(flow)
 
-    def take(self, now: float) -> "list[Datagram]":
+    def take(self, now: float) -> "Sequence[Datagram]":
         """What is to be sent now."""
+        if not self._urgent and not self._flows:
+            return ()
         found = self._urgent
         self._urgent = []
         if self._flows:

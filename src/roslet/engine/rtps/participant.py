@@ -29,7 +29,7 @@ from roslet.wire.rtps.times import INFINITE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from typing import Any
 
     from roslet.engine.rtps.outbox import Address, Datagram
@@ -161,7 +161,16 @@ class Participant:
         except ProtocolError as error:
             self._count(error.reason)
 
-    def datagrams_to_send(self, now: float) -> "list[Datagram]":
+    def receive_again(self, view: memoryview, size: int, now: float) -> None:
+        """The same of view[:size], for shells that receive samples always into the same buffer, which `view` is all of,
+        without asking where from: what is like an earlier datagram makes no garbage. Of user data only; discovery that comes
+        so is not believed."""
+        try:
+            self._receiver.receive_again(view, size, now)
+        except ProtocolError as error:
+            self._count(error.reason)
+
+    def datagrams_to_send(self, now: float) -> "Sequence[Datagram]":
         """What is to be sent now: (parts, addresses), one datagram of all parts to each address."""
         return self.outbox.take(now)
 

@@ -251,7 +251,7 @@ class Repairs:
                 size = len(parts[0]) + len(parts[1])
             if proxy.next_preface is None:
                 proxy.next_preface = Preface(b"", writer.entity_id, proxy.guid[12:])
-            parts += [_emit(proxy.next_preface, change, body), change.inline_qos, change.payload]
+            parts += [_emit(proxy.next_preface, change, body), change.inline_qos, bytes(change.payload)]
             # What is no multiple of 4 must be the last: the payload would end with its padding.
             size += need if not body & 3 else PACKED
         if parts:

@@ -10,6 +10,7 @@ from roslet.engine.rtps.outbox import Flow
 from roslet.engine.rtps.reader_proxy import ReaderProxy, addresses_for_all
 from roslet.engine.rtps.repairs import Repairs
 from roslet.engine.rtps.schedule import Alarm
+from roslet.wire.primitives import CPYTHON
 from roslet.wire.rtps import guid as guids
 from roslet.wire.rtps import inline_qos as inline
 from roslet.wire.rtps import times
@@ -173,8 +174,11 @@ class Writer:
         if kept or bulk or to:
             if self._lifespan is not None:
                 self.history.forget_expired(now)
-            payload = bytes(payload)
-            change = Change(sequence, payload, inline_qos, flags, time, key or to, to, self.fragment_size)
+            if not CPYTHON and not (bulk or to or key or inline_qos) and flags == FLAG_D:
+                change = self.history.spare(sequence, payload, time, self.fragment_size, self._outbox.idle)
+            if change is None:
+                payload = bytes(payload)
+                change = Change(sequence, payload, inline_qos, flags, time, key or to, to, self.fragment_size)
             if self._lifespan is not None:
                 change.expires = now + self._lifespan
             if kept:
@@ -218,8 +222,12 @@ class Writer:
         time: int,
         flags: int,
     ) -> None:
-        seconds, fraction = times.split(time)
         size = len(payload) + len(inline_qos)
+        if not CPYTHON and self._goes_at_once(size, inline_qos, flags):
+            filled = self.preface.fill(sequence, size, time)
+            self._outbox.at_once(filled, payload, self._addresses)  # type: ignore[misc]
+            return
+        seconds, fraction = times.split(time)
         wire_flags = flags | FLAG_E | (FLAG_Q if inline_qos else 0)
         pad = beat = b""
         if self._any_reliable:
@@ -232,9 +240,20 @@ class Writer:
         if size > JOINED:
             self._outbox.send((front + inline_qos, payload, pad + beat), self._addresses)
         elif beat or inline_qos:
-            self._outbox.send((b"".join((front, inline_qos, payload, pad, beat)),), self._addresses)
+            self._outbox.send((b"".join((front, inline_qos, bytes(payload), pad, beat)),), self._addresses)
         else:
             self._outbox.send((front + payload,), self._addresses)
+
+    def _goes_at_once(self, size: int, inline_qos: bytes, flags: int) -> bool:
+        """Whether a small sample need not be queued: nothing is to go with it, or before it."""
+        outbox = self._outbox
+        if outbox.at_once is None or not outbox.idle or size > JOINED or inline_qos or flags != FLAG_D:
+            return False
+        if self._any_reliable:
+            if self._since_heartbeat + 1 >= PIGGYBACK:
+                return False
+            self._since_heartbeat += 1
+        return True
 
     def dispose(
         self, key: bytes, now: float, payload: "bytes | None" = None, time: "int | None" = None

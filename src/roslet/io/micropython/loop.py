@@ -22,6 +22,7 @@ WRITE: int = _select.POLLOUT
 GONE: int = _select.POLLERR | _select.POLLHUP
 # Seconds that an idle loop sleeps at most.
 MAX_SLEEP = 1.0
+MAX_SLEEP_MS = 1000
 # Milliseconds between two looks at the sockets in asyncio programs, while nothing happens: the longest that a message waits.
 IDLE_LOOK = 5
 # Sockets that are served before the poller is asked again.
@@ -51,8 +52,11 @@ class Loop:
         self._ready: list[Any] = [None] * MAX_READY
         self._events = [0] * MAX_READY
         self._later: list[tuple[Callable[[Any], None], Any]] = []
-        self._last = _time.ticks_us()
-        self._microseconds = 0
+        self._last = _time.ticks_ms()
+        self._milliseconds = 0
+        self._now = 0.0
+        self._soonest: float | None = None  # as the last turn found it, and ...
+        self._soonest_ms = 0  # ... the same in milliseconds, not before it
         collector: Any = gc
         collector.collect()
         collector.threshold(collector.mem_free() // GARBAGE)
@@ -61,16 +65,23 @@ class Loop:
     # -- time
 
     def now(self) -> float:
-        """Seconds since the loop was made; never goes back. To be called at least every few minutes: ticks wrap."""
-        ticks = _time.ticks_us()
-        self._microseconds += _time.ticks_diff(ticks, self._last)
-        self._last = ticks
-        return self._microseconds / 1000000
+        """Seconds since the loop was made, of a millisecond's resolution: within one, the same object. Never goes back."""
+        ticks = _time.ticks_ms()
+        if ticks != self._last:
+            self._milliseconds += _time.ticks_diff(ticks, self._last)
+            self._last = ticks
+            self._now = self._milliseconds / 1000
+        return self._now
 
     @property
     def epoch(self) -> int:
         """Nanoseconds of the Unix epoch when `now()` was 0, as the clock stood then."""
         return self._began
+
+    def stamp(self) -> int:
+        """Nanoseconds of the Unix epoch now, by the same clock: without garbage where integers are of 64 bits."""
+        self.now()
+        return self._began + self._milliseconds * 1000000
 
     # -- sockets
 
@@ -115,17 +126,16 @@ class Loop:
 
     def turn(self, longest: float = 0.0) -> bool:
         """Serve what is ready; wait at most `longest` seconds for something. Whether anything was served."""
-        now = self.now()
-        wait = longest
+        self.now()
+        soonest: float | None = None
         for one in self.timed:
             at = one.deadline()
-            if at is not None and at - now < wait:
-                wait = at - now
-        if self._later and not self.busy:
-            wait = 0.0
+            if at is not None and (soonest is None or at < soonest):
+                soonest = at
+        wait = self._wait(longest, soonest) if self.busy or not self._later else 0
         count = 0
         # A handler may register and unregister; so all are noted before the first is called.
-        for found in self._poller.ipoll(int(wait * 1000) + 1 if wait > 0 else 0):
+        for found in self._poller.ipoll(wait):
             self._ready[count] = found[0]
             self._events[count] = found[1]
             count += 1
@@ -138,7 +148,10 @@ class Loop:
                 handler(self._events[at])
         served = count > 0
         now = self.now()
-        for one in list(self.timed):
+        each = 0
+        while each < len(self.timed):  # whoever follows one that takes itself off has its turn next time
+            one = self.timed[each]
+            each += 1
             at = one.deadline()
             if at is not None and at <= now:
                 one.handle_deadline(now)
@@ -153,6 +166,17 @@ class Loop:
                 self.error = None
                 raise error
         return served
+
+    def _wait(self, longest: float, soonest: "float | None") -> int:
+        """Milliseconds that a turn waits at most. Makes no floats while the same time is the next."""
+        wait = MAX_SLEEP_MS if longest >= MAX_SLEEP else int(longest * 1000) + 1 if longest > 0 else 0
+        if soonest is None:
+            return wait
+        if soonest is not self._soonest:
+            self._soonest = soonest
+            self._soonest_ms = int(soonest * 1000) + 1
+        left = self._soonest_ms - self._milliseconds
+        return min(wait, left) if left > 0 else 0
 
     def run_until(self, predicate: "Callable[[], object]", timeout: "float | None" = None) -> bool:
         """Serve until `predicate()` is true or `timeout` seconds have passed; says which (true: the predicate)."""

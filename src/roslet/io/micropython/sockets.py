@@ -33,12 +33,16 @@ _sources: "dict[bytes, tuple[str, int]]" = {}
 
 def address(host: str, port: int) -> "Any":
     """What `connect`, `bind` and `sendto` take. A host that is no number is looked up, which blocks. Raises OSError."""
-    key = (host, port)
-    found = _known.get(key)
+    return address_of((host, port))
+
+
+def address_of(pair: "tuple[str, int]") -> "Any":
+    """The same of both as a pair."""
+    found = _known.get(pair)
     if found is None:
         if len(_known) >= MAX_KNOWN:
             _known.clear()
-        found = _known[key] = _socket.getaddrinfo(host, port, _socket.AF_INET)[0][-1]
+        found = _known[pair] = _socket.getaddrinfo(pair[0], pair[1], _socket.AF_INET)[0][-1]
     return found
 
 

@@ -26,8 +26,10 @@ GROUP = "239.255.0.1"
 UNICAST_IDS = 8
 MAX_PARTICIPANT_ID = 119
 _WRITES, _READS = 1, 2
-# Datagrams read in one go before others get their turn.
-BATCH = 8
+# Octets around a sample in a datagram, and behind it, at most as nearly all peers send them.
+AROUND = 256
+# Seconds after which a sample is read with its source again, which renews its participant's lease.
+WITH_SOURCE = 1.0
 
 
 class Domain:
@@ -44,7 +46,13 @@ class Domain:
         self._closed = False
         self._relearn = False
         # What leaves in parts is put together here: MicroPython gathers nothing.
-        self._out = bytearray(fragment + 512)
+        self._out = memoryview(bytearray(fragment + 512))
+        self._whole = self._out
+        # Samples come in here, where the largest that may come is known.
+        self._room = memoryview(bytearray(sockets.USUAL))
+        self._bounded = True
+        self._reading = False  # whether somebody may be looking at what lies there
+        self._with_source = 0.0  # when the next is read with its source
         self._meta, self._user, self.participant_id = self._bind()
         # Of `interface=` only addresses are known here.
         found = list(network.interfaces) or sockets.own_addresses()
@@ -78,7 +86,9 @@ class Domain:
         ] = {}  # ours, and what of them; others' endpoints are kept if they may match
         self._dropped = False  # whether there was any of those
         self.participant.keep_only(self._is_ours)
-        for sock in (self._meta, self._user, self._group):
+        self.participant.outbox.at_once = self._send_at_once
+        loop.register(self._user, self._read_samples)
+        for sock in (self._meta, self._group):
             if sock is not None:
                 loop.register(sock, self._reader_of(sock))
         now = loop.now()
@@ -140,23 +150,66 @@ class Domain:
 
     def _reader_of(self, sock: "Any") -> "Callable[[int], None]":
         def readable(events: int) -> None:
-            for _ in range(BATCH):
-                if self._closed:
-                    return
-                try:
-                    data, raw = sockets.receive(sock, self._datagram)
-                except OSError:
-                    break
-                except MemoryError:
-                    # The heap is full, or in pieces. What the datagram said comes again, or is reported lost.
-                    gc.collect()
-                    self._count("no-memory-for-datagram")
-                    break
-                self.participant.receive_datagram(data, sockets.source(raw), self.loop.now())
-                self._tell()
-            self.flush()
+            self._read(sock)
 
         return readable
+
+    def _read(self, sock: "Any") -> None:
+        # One, as the poller tells of the next: a look in vain leaves an exception, and the room for what is not there.
+        if self._closed:
+            return
+        try:
+            data, raw = sockets.receive(sock, self._datagram)
+        except OSError:
+            return
+        except MemoryError:
+            self._no_memory()
+            return
+        self.participant.receive_datagram(data, sockets.source(raw), self.loop.now())
+        self._tell()
+        self.flush()
+
+    def _no_memory(self) -> None:
+        """The heap is full, or in pieces. What the datagram said comes again, or is reported lost."""
+        gc.collect()
+        self._count("no-memory-for-datagram")
+
+    def take_in(self, kind: "Any") -> None:
+        """Messages of this class are about to come: from then on the room is that of the largest, if there is a largest."""
+        size = kind._maximum_size
+        if size is None or size + AROUND > self._datagram:
+            self._bounded = False
+        elif size + AROUND > len(self._room):
+            self._room = memoryview(bytearray(size + AROUND))
+
+    def _read_samples(self, events: int) -> None:
+        """Mostly without asking where from, which is garbage; what is like an earlier one is told by windows on the room.
+        (`readinto` takes no datagram but all that wait, as one; so one is copied.)"""
+        now = self.loop.now()
+        if self._reading or not self._bounded or now >= self._with_source:
+            self._with_source = now + WITH_SOURCE
+            self._read(self._user)
+            return
+        room = self._room
+        try:
+            data = self._user.recv(len(room))
+        except OSError:
+            return
+        except MemoryError:
+            self._no_memory()
+            return
+        count = len(data)
+        room[:count] = data
+        self._reading = True
+        try:
+            self.participant.receive_again(room, count, now)
+        finally:
+            self._reading = False
+        if count == len(room) < self._datagram:
+            # It may have been cut: the whole submessages of it were taken, and the rest will be asked for again.
+            self._room = memoryview(bytearray(min(2 * count, self._datagram)))
+        self._tell()
+        self.flush()
 
     def _is_ours(self, found: "Any") -> bool:
         if not self._topics.get(found.topic, 0) & (_READS if found.writer else _WRITES):
@@ -195,6 +248,25 @@ class Domain:
 
     # -- out
 
+    def _send_at_once(self, front: "Any", rest: "Any", addresses: "Any") -> None:
+        """One datagram of these two parts, to each of the addresses."""
+        if self._closed:
+            return
+        begin = len(front)
+        end = begin + len(rest)
+        whole = self._place(end)
+        whole[:begin] = front
+        whole[begin:] = rest
+        self._send_to(whole, addresses)
+
+    def _place(self, size: int) -> memoryview:
+        """Room for a datagram; for one after another of the same size the same object."""
+        if len(self._whole) != size:
+            if size > len(self._out):
+                self._out = memoryview(bytearray(size))
+            self._whole = self._out[:size]
+        return self._whole
+
     def flush(self) -> None:
         """Send what is pending."""
         if self._closed:
@@ -215,21 +287,28 @@ class Domain:
             size = 0
             for part in parts:
                 size += len(part)
-            if size > len(self._out):
-                self._out = bytearray(size)
+            whole = self._place(size)
             at = 0
             for part in parts:
-                self._out[at : at + len(part)] = part
+                whole[at : at + len(part)] = part
                 at += len(part)
-            whole = memoryview(self._out)[:size]
+        self._send_to(whole, addresses)
+
+    def _send_to(self, whole: "Any", addresses: "Any") -> None:
         for one in addresses:
-            where = sockets.address(one[0], one[1])
-            for sock in self._senders if one[0] == GROUP else (self._user,):
-                try:
-                    sock.sendto(whole, where)
-                except OSError:
-                    # As good as lost on the way; reliable writers send it again.
-                    self._count("datagram-not-sent")
+            where = sockets.address_of(one)
+            if one[0] == GROUP:
+                for sock in self._senders:
+                    self._send_by(sock, whole, where)
+            else:
+                self._send_by(self._user, whole, where)
+
+    def _send_by(self, sock: "Any", whole: "Any", where: "Any") -> None:
+        try:
+            sock.sendto(whole, where)
+        except OSError:
+            # As good as lost on the way; reliable writers send it again.
+            self._count("datagram-not-sent")
 
     def _count(self, reason: str) -> None:
         counters = self.participant.counters

@@ -120,6 +120,7 @@ class Publisher:
         self.qos = qos
         self.messages = 0
         self._buffer = memoryview(bytearray(kind._fixed_size + 4 if kind._fixed_size else bounds.PUBLISH))
+        self._whole = self._buffer
         self._local: list[Subscription] = []
 
     def publish(self, message: "Any" = None, **fields: "Any") -> None:
@@ -136,12 +137,19 @@ class Publisher:
                 break
             except BufferTooSmall as error:
                 self._buffer = memoryview(bytearray(error.size + 4))
+                self._whole = self._buffer
         for subscription in self._local:
             if not self.node.loop.later(subscription.deliver, message.copy()):
                 self.node._count("receive-queue-full")
 
     def _send(self, message: "Any") -> None:
         raise NotImplementedError
+
+    def _part(self, end: int) -> memoryview:
+        """The buffer up to `end`; of one message after another of the same size the same object."""
+        if len(self._whole) != end:
+            self._whole = self._buffer[:end]
+        return self._whole
 
     @property
     def subscriber_count(self) -> int:

@@ -238,7 +238,7 @@ class Publisher(endpoints.Publisher):
         buffer = self._buffer
         end = message.serialize_into(buffer, 4)
         pack_into("<I", buffer, 0, end - 4)
-        frame = buffer[:end]
+        frame = self._part(end)
         for link in self._entry.links:
             channel: Any = link.channel
             if link.queue.bytes == 0:

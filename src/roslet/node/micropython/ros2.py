@@ -183,12 +183,15 @@ class Publisher(endpoints.Publisher):
         network = self._network
         if self not in network.topics.publishers or network.node.is_shutdown:
             raise NodeClosed("the publisher of %s is closed" % self.topic)
-        payload = self._buffer[: message.serialize_into(self._buffer, 0)]
+        payload = self._part(message.serialize_into(self._buffer, 0))
         writer = self._writer
         if writer.full(len(payload)):  # "keep_all"
-            network.node.loop.run_until(lambda: not writer.full(len(payload)), 10.0)
-        writer.write(payload, network.node.loop.now())
+            self._wait(len(payload))
+        writer.write(payload, network.node.loop.now(), network.node.loop.stamp())
         network.domain.flush()
+
+    def _wait(self, size: int) -> None:
+        self.node.loop.run_until(lambda: not self._writer.full(size), 10.0)
 
     def _flushed(self) -> bool:
         return self._writer.acknowledged(self._writer.last)
@@ -217,6 +220,7 @@ class Subscription(endpoints.Subscription):
         endpoints.Subscription.__init__(self, network.node, topic, kind, callback, qos)
         self._network = network
         self._most = max_message
+        network.domain.take_in(kind)
         dds = dds_topic(TOPIC, topic)
         network.domain.expect(dds, False)
         self._reader = network.context.create_reader(
@@ -241,7 +245,7 @@ class Subscription(endpoints.Subscription):
         if len(payload) > self._most:
             self.node._count("message-too-large")
             return
-        self._take_in(memoryview(payload), 0, len(payload))
+        self._take_in(payload if isinstance(payload, memoryview) else memoryview(payload), 0, len(payload))
 
     @property
     def publisher_count(self) -> int:
@@ -264,6 +268,7 @@ class Service(endpoints.Service):
         endpoints.Service.__init__(self, network.node, name, kind, handler)
         self._network = network
         self.background = False
+        network.domain.take_in(kind.Request)
         network.domain.expect(dds_topic(REQUEST, name), False)
         network.domain.expect(dds_topic(REPLY, name), True)
         self._server: ServiceServer | None = ServiceServer(
@@ -317,6 +322,7 @@ class Client(endpoints.Client):
         self._network = network
         self._waiting: list[tuple[bytes, Future]] = []
         self._calls: dict[int, Future] = {}
+        network.domain.take_in(kind.Response)
         network.domain.expect(dds_topic(REPLY, name), False)
         network.domain.expect(dds_topic(REQUEST, name), True)
         self._client = ServiceClient(

@@ -10,7 +10,11 @@ from roslet.wire.primitives import packer, unpacker
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Sequence
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    pass
 
 MAX_BITS = 256
 MAX_NUMBER = (1 << 63) - 1
@@ -63,8 +67,10 @@ class NumberSet(Record):
         return data
 
 
-def of(base: int, numbers: "Iterable[int]") -> NumberSet:
+def of(base: int, numbers: "Sequence[int]") -> NumberSet:
     """The set of those numbers that lie in base .. base + 255; the others are left out."""
+    if not numbers:
+        return NumberSet(base)
     words = [0] * 8
     bits = 0
     for number in numbers:
@@ -98,6 +104,8 @@ def parse(
         raise ProtocolError("number-set-base-invalid", "%d" % base)
     at += fixed
     count = (bits + 31) >> 5
+    if not count:
+        return NumberSet(base), at
     if end - at < 4 * count:
         raise ProtocolError("number-set-truncated", "%d bytes of bitmap, needs %d" % (end - at, 4 * count))
     word = _PARSE_WORD[order]

@@ -2,7 +2,6 @@
 
 from roslet.errors import ProtocolError
 from roslet.record import Names
-from roslet.wire.fields import LENGTH
 from roslet.wire.rtps.header import SIZE as HEADER_SIZE
 
 TYPE_CHECKING = False
@@ -60,26 +59,31 @@ def walk(
     size = len(data)
     count = 0
     while at < size:
-        if size - at < 4:
-            raise ProtocolError("submessage-truncated", "%d bytes at byte %d" % (size - at, at))
+        end = end_of(data, at, count)
         count += 1
-        if count > MAX_SUBMESSAGES:
-            raise ProtocolError("too-many-submessages", "more than %d" % MAX_SUBMESSAGES)
-        kind = data[at]
-        flags = data[at + 1]
-        length = LENGTH[flags & 1](data, at + 2)[0]
-        at += 4
-        if length == 0 and kind != PAD and kind != INFO_TS:
-            end = size
-        else:
-            end = at + length
-            if end > size:
-                raise ProtocolError(
-                    "submessage-too-long",
-                    "%s of %d bytes with %d left, at byte %d" % (NAMES[kind], length, size - at, at - 4),
-                )
-        yield kind, flags, at, end
+        yield data[at], data[at + 1], at + 4, end
         at = end
+
+
+def end_of(data: "bytes | bytearray | memoryview", at: int, count: int) -> int:
+    """Where the submessage at `at` ends, which is the one after `count` others: a step of `walk`, whose tuples would be
+    garbage on MicroPython."""
+    size = len(data)
+    if size - at < 4:
+        raise ProtocolError("submessage-truncated", "%d bytes at byte %d" % (size - at, at))
+    if count >= MAX_SUBMESSAGES:
+        raise ProtocolError("too-many-submessages", "more than %d" % MAX_SUBMESSAGES)
+    kind = data[at]
+    length = data[at + 2] | data[at + 3] << 8 if data[at + 1] & FLAG_E else data[at + 2] << 8 | data[at + 3]
+    if length == 0 and kind != PAD and kind != INFO_TS:
+        return size
+    end = at + 4 + length
+    if end > size:
+        raise ProtocolError(
+            "submessage-too-long",
+            "%s of %d bytes with %d left, at byte %d" % (NAMES[kind], length, size - at - 4, at),
+        )
+    return end
 
 
 def truncated(kind: int, have: int, need: int) -> ProtocolError:

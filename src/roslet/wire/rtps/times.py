@@ -20,6 +20,11 @@ def split(nanoseconds: int) -> "tuple[int, int]":
     return seconds & 0xFFFFFFFF, (((nanoseconds - seconds * 1000000000) << 32) + 999999999) // 1000000000
 
 
+def fraction_of(nanoseconds: int) -> int:
+    """The second of the two that `split` gives."""
+    return ((nanoseconds % 1000000000 << 32) + 999999999) // 1000000000
+
+
 def join(seconds: int, fraction: int) -> int:
     """Nanoseconds of both parts."""
     return seconds * 1000000000 + (fraction * 1000000000 >> 32)
