@@ -12,10 +12,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    pass
-
 MAX_BITS = 256
 MAX_NUMBER = (1 << 63) - 1
 """The last sequence number."""
