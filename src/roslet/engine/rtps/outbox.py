@@ -57,14 +57,16 @@ class Outbox:
 
     def take(self, now: float) -> "Sequence[Datagram]":
         """What is to be sent now."""
-        if not self._urgent and not self._flows:
-            return ()
         found = self._urgent
+        if not self._flows:
+            if not found:
+                return ()
+            self._urgent = []
+            return found
         self._urgent = []
-        if self._flows:
-            for flow in self._flows:
-                flow.take(now, found)
-            self._flows = [flow for flow in self._flows if flow.waiting or flow.repairs]
+        for flow in self._flows:
+            flow.take(now, found)
+        self._flows = [flow for flow in self._flows if flow.waiting or flow.repairs]
         return found
 
     def deadline(self) -> "float | None":
