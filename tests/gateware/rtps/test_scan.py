@@ -9,10 +9,11 @@ import pytest
 from amaranth.hdl import Module, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
+from amaranth.sim import Simulator
 
 from gateware.words import Tables, WordBench
 from roslet.gateware.rtps.ports import ReadSignature
-from roslet.gateware.rtps.scan import find_endpoint
+from roslet.gateware.rtps.scan import find_endpoint, lowest
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 
 Endpoint = tuple[int, int, int, int]
@@ -104,3 +105,18 @@ def test_the_one_with_this_key_of_this_participant_and_of_this_kind_is_found_if_
 
     bench.drive(ask)
     bench.run()
+
+
+@pytest.mark.parametrize("width", [1, 2, 3, 5, 8, 11])
+def test_the_lowest_bit_that_is_high_is_found(width: int) -> None:
+    m, bits, found = Module(), Signal(width), Signal(range(max(2, width)))
+    m.d.comb += found.eq(lowest(bits))
+
+    async def process(ctx: Any) -> None:
+        for value in range(1 << width):
+            ctx.set(bits, value)
+            assert ctx.get(found) == max((value & -value).bit_length() - 1, 0)
+
+    simulator = Simulator(m)
+    simulator.add_testbench(process)
+    simulator.run()

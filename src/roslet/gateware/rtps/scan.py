@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import C, Module, Mux, Signal, Value
+from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
 
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.ports import READ_LATENCY
@@ -67,8 +67,10 @@ def find_endpoint(
 
 
 def lowest(bits: Value) -> Value:
-    """The number of the lowest bit that is high; of none, 0."""
-    number: Value = C(0, 1)
-    for n in reversed(range(len(bits))):
-        number = Mux(bits[n], n, number)
-    return number
+    """The number of the lowest bit that is high; of none, 0. Halves are judged side by side: no chain of all bits."""
+    if len(bits) == 1:
+        return C(0, 1)
+    half = 1 << ((len(bits) - 1).bit_length() - 1)
+    below, above = bits[:half], bits[half:]
+    number = Mux(below.any(), lowest(below), lowest(above))
+    return Cat(number[: (half - 1).bit_length()], ~below.any() & above.any())
