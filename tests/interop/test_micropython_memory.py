@@ -50,6 +50,16 @@ def pinger(network: str, count: int, name: str, *rest: str) -> list[str]:
     return [sys.executable, program, network, str(count), name, str(DEFINITIONS), *rest]
 
 
+def on_ros1(master: Master) -> dict[str, str]:
+    """The environment of programs on that master."""
+    return {
+        **os.environ,
+        "ROS_MASTER_URI": master.uri,
+        "ROS_IP": "127.0.0.1",
+        "PYTHONPATH": str(peers.ROOT / "src"),
+    }
+
+
 def drift(lines: list[str]) -> int:
     """By how much what the heap holds at rest grew from the first half to the second: the least of each, as an announcement
     may be under way at the moment."""
@@ -72,12 +82,7 @@ def test_an_echo_fits_its_flash(dialect: Literal["ros1", "ros2"], most: int, tmp
 def test_a_ros1_echo_in_160_kb_takes_no_more_with_time(tmp_path: pathlib.Path) -> None:
     made = echo("ros1", tmp_path, rosout=True)
     master = Master("roslet", tmp_path)
-    environment = {
-        **os.environ,
-        "ROS_MASTER_URI": master.uri,
-        "ROS_IP": "127.0.0.1",
-        "PYTHONPATH": str(peers.ROOT / "src"),
-    }
+    environment = on_ros1(master)
     board = Program(boards.command(made, "160k"), environment)
     try:
         board.wait_for("ready")
@@ -117,12 +122,7 @@ def garbage(lines: list[str]) -> int:
 def test_what_a_ros1_message_leaves_is_little(tmp_path: pathlib.Path) -> None:
     made = echo("ros1", tmp_path, rosout=False, program="board_garbage.py")
     master = Master("roslet", tmp_path)
-    environment = {
-        **os.environ,
-        "ROS_MASTER_URI": master.uri,
-        "ROS_IP": "127.0.0.1",
-        "PYTHONPATH": str(peers.ROOT / "src"),
-    }
+    environment = on_ros1(master)
     board = Program(boards.command(made, "16m"), environment)
     try:
         board.wait_for("ready")

@@ -12,16 +12,12 @@ from typing import Any
 
 from amaranth.hdl import Assert, Assume, C, Cat, Const, Cover, Module, Mux, Signal, Value
 from amaranth.lib import wiring
-from amaranth.lib.wiring import In, Out
 
 from gateware.formal import Bug, Spec
-from roslet.gateware.meta import ADDRESSES
 from roslet.gateware.rtps import discovery, ports, tables
-from roslet.gateware.rtps.parameters import READ
-from roslet.gateware.rtps.ports import DISCOVERY, ReadSignature, WriteSignature
+from roslet.gateware.rtps.parameters import Parameters
 from roslet.gateware.rtps.scan import lowest
 from roslet.gateware.rtps.tables import Local, OwnMap, PeerMap
-from roslet.gateware.words import MessageSignature
 
 PEERS = PeerMap(2, 3)
 OWN = OwnMap(
@@ -42,24 +38,7 @@ class CutParameters(wiring.Component):
     """`Parameters`, whose outputs are inputs of the proof: it says anything that its own proof, `ParametersSpec`, leaves."""
 
     def __init__(self, peers: PeerMap, own: OwnMap, judge_domain: bool) -> None:
-        super().__init__(
-            {
-                "i": In(MessageSignature(DISCOVERY)),
-                "peers": Out(ReadSignature(peers.address_bits)),
-                "own": Out(ReadSignature(own.address_bits)),
-                "write": Out(WriteSignature(peers.address_bits)),
-                "addresses": In(ADDRESSES),
-                "group_port": In(16),
-                "domain": In(8),
-                "done": Out(1),
-                "proceed": In(1),
-                "read": Out(READ),
-                "same": Out(1 << own.local_bits),
-                "near": Out(1),
-                "listens": Out(1),
-                "drop_malformed": Out(1),
-            }
-        )
+        super().__init__(Parameters(peers, own, judge_domain).signature.members)
         self.takes = Signal()
         write = self.write
         given = self.done, self.read, self.same, self.near, self.listens, self.drop_malformed, self.takes
