@@ -38,7 +38,7 @@ class CutParameters(wiring.Component):
     """`Parameters`, whose outputs are inputs of the proof: it says anything that its own proof, `ParametersSpec`, leaves."""
 
     def __init__(self, peers: PeerMap, own: OwnMap, judge_domain: bool) -> None:
-        super().__init__(Parameters(peers, own, judge_domain).signature.members)
+        super().__init__(dict(Parameters(peers, own, judge_domain).signature.members.items()))
         self.takes = Signal()
         write = self.write
         given = self.done, self.read, self.same, self.near, self.listens, self.drop_malformed, self.takes
