@@ -20,7 +20,7 @@ _IP_MULTICAST_IF, _IP_MULTICAST_TTL, _IP_MULTICAST_LOOP, _IP_MULTICAST_ALL = 32,
 # Where ports are chosen from, and how often another is tried.
 FIRST_PORT, LAST_PORT = 20000, 32767
 TRIES = 100
-# Addresses that are remembered in the port's form.
+# Addresses that are remembered in the port's form, and hosts.
 MAX_KNOWN = 64
 # Bytes that nearly every datagram has less of.
 USUAL = 1536
@@ -28,7 +28,7 @@ LOOPBACK = "127.0.0.1"
 
 _peek: int = getattr(_socket, "MSG_PEEK", 0)
 _known: "dict[tuple[str, int], Any]" = {}
-_sources: "dict[bytes, tuple[str, int]]" = {}
+_hosts: "dict[bytes, str]" = {}
 
 
 def address(host: str, port: int) -> "Any":
@@ -46,17 +46,18 @@ def address_of(pair: "tuple[str, int]") -> "Any":
     return found
 
 
-def source(raw: "Any") -> "tuple[str, int]":
-    """Host and port of an address that `recvfrom` or `accept` gave."""
+def host(raw: "Any") -> str:
+    """The host of an address that `recvfrom` or `accept` gave. Hosts are few and remembered; each connection has another
+    port."""
     if isinstance(raw, tuple):
-        return raw
-    raw = bytes(raw)
-    found = _sources.get(raw)
+        return raw[0]  # type: ignore[no-any-return]
+    number = bytes(raw[4:8])
+    found = _hosts.get(number)
     if found is None:
-        if len(_sources) >= MAX_KNOWN:
-            _sources.clear()
-        a, b, c, d = raw[4:8]
-        found = _sources[raw] = ("%d.%d.%d.%d" % (a, b, c, d), raw[2] << 8 | raw[3])
+        if len(_hosts) >= MAX_KNOWN:
+            _hosts.clear()
+        a, b, c, d = number
+        found = _hosts[number] = "%d.%d.%d.%d" % (a, b, c, d)
     return found
 
 

@@ -135,7 +135,7 @@ class Domain:
             # On a host with nothing but loopback others may not use the group, although we can.
             found += self._ports_of(sockets.LOOPBACK)
         for host, port in network.peers:
-            host = sockets.source(sockets.address(host, port or 1))[0]
+            host = sockets.host(sockets.address(host, port or 1))
             found += self._ports_of(host) if port is None else [(host, port)]
         return tuple(found)
 
@@ -165,7 +165,8 @@ class Domain:
         except MemoryError:
             self._no_memory()
             return
-        self.participant.receive_datagram(data, sockets.source(raw), self.loop.now())
+        source = (sockets.host(raw), 0)  # nobody asks for its port
+        self.participant.receive_datagram(data, source, self.loop.now())
         self._tell()
         self.flush()
 
