@@ -30,6 +30,9 @@ PATIENCE = pytest.mark.timeout(LIMIT + 30)
 DEFINITIONS = peers.ROOT / "examples/msgs/mros_comm_measure"
 # Bytes of .mpy, and of heap.
 FLASH = {"ros1": 60_000, "ros2": 110_000}
+# Octets by which what the heap holds differs from one look to the next by nothing but chance: the collector keeps what any
+# word on the stack points at, be it left over. Of one look up to 256 were seen, of the least of five 32.
+STRAY = 128
 # Octets of heap that a message echoed takes until they are collected: a quarter more than was measured.
 GARBAGE = {"ros1": 455, "ros2": 1090}
 
@@ -73,7 +76,7 @@ def drift(lines: list[str]) -> int:
     half = len(held) // 2
     assert half >= 5, lines
     grown = min(held[half:]) - min(held[:half])
-    if grown > 0:
+    if grown > STRAY:
         print("held at each rest:", *held)
     return grown
 
@@ -99,7 +102,7 @@ def test_a_ros1_echo_in_160_kb_takes_no_more_with_time(tmp_path: pathlib.Path) -
         talker = Program(pinger("ros1://", MESSAGES, "pinger"), environment)
         talker.finish(LIMIT)
         assert talker.lines[-1].startswith(f"right {MESSAGES} of {MESSAGES} "), talker.lines
-        assert drift(board.lines) <= 0
+        assert drift(board.lines) <= STRAY
     finally:
         board.stop()
         master.stop()
@@ -123,7 +126,7 @@ def test_a_ros2_echo_with_four_peers_takes_no_more_with_time(
         talker = namespace.start(*pinger("ros2://", MESSAGES, "pinger"), name="pinger", **path)
         lines = talker.finish(LIMIT)
         assert lines[-1].startswith(f"right {MESSAGES} of {MESSAGES} "), lines
-        assert drift(board.lines()) <= 0
+        assert drift(board.lines()) <= STRAY
 
 
 def at_rest(board: Program) -> int:

@@ -22,8 +22,8 @@ FIRST_PORT, LAST_PORT = 20000, 32767
 TRIES = 100
 # Addresses that are remembered in the port's form, and hosts.
 MAX_KNOWN = 64
-# Bytes that nearly every datagram has less of.
-USUAL = 1536
+# Bytes that are read of a datagram at first: most have less.
+FIRST = 512
 LOOPBACK = "127.0.0.1"
 
 _peek: int = getattr(_socket, "MSG_PEEK", 0)
@@ -135,29 +135,28 @@ def datagrams(port: int, shared: bool = False) -> "Any":
 
 
 def receive(sock: "Any", most: int) -> "tuple[bytes, Any]":
-    """A datagram, of which the rest beyond `most` is lost, and where it came from. Raises OSError, MemoryError.
+    """A datagram, of which the rest beyond `most` is lost, and where it came from. Raises OSError; MemoryError, and then
+    the datagram still waits.
 
-    MicroPython allots room for the longest before it looks. Where it can look first, the room is that of most
-    datagrams, and of one for which there is no memory the beginning is taken: it has whole submessages, and the rest
-    will be asked for again.
+    MicroPython allots room for the longest before it looks, in one piece, which a heap that is nearly full may not have.
+    Where it can look first, it begins with little, and of a datagram for which there is no memory the beginning is taken:
+    it has whole submessages, and the rest will be asked for again.
     """
-    room = USUAL
+    room = FIRST if _peek else most
     found: Any = None
-    while _peek and room < most:
-        try:
+    try:
+        while room < most:
             found = sock.recvfrom(room, _peek)
-        except MemoryError:
-            if found is None:
-                raise
-            whole = True  # of what can be had
+            if len(found[0]) < room:
+                break
+            room *= 2
         else:
-            whole = len(found[0]) < room
-        if whole:
-            sock.recv(1)  # the rest of it goes as well
-            return found  # type: ignore[no-any-return]
-        room *= 2
-    found = None
-    return sock.recvfrom(most)  # type: ignore[no-any-return]
+            return sock.recvfrom(most)  # type: ignore[no-any-return]
+    except MemoryError:
+        if found is None:
+            raise
+    sock.recv(1)  # the rest of it goes as well
+    return found  # type: ignore[no-any-return]
 
 
 def join(sock: "Any", group: str, interface: str) -> bool:
