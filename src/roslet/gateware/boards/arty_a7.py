@@ -11,7 +11,6 @@ from typing import Any
 from roslet.gateware import toolchain
 
 PART = "xc7a35ticsg324-1L"  # of the A7-35T; the A7-100T has xc7a100tcsg324-1
-CLOCK_MHZ = 100.0
 
 PINS = {
     "clk": "E3",
