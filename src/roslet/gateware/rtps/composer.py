@@ -11,11 +11,22 @@ from roslet.gateware.rtps.rom import REGISTER_BITS, WORD_BITS, Op, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 
 SUBJECT = data.StructLayout(
-    {"builtin": 1, "kind": 2, "slot": 8, "endpoint": 8, "entity": 8, "sample": 32, "words": 16}
+    {
+        "builtin": 1,
+        "kind": 2,
+        "slot": 8,
+        "endpoint": 8,
+        "local": 8,
+        "sample": 32,
+        "words": 16,
+        "padding": 2,
+        "missing": 32,
+    }
 )
-"""Whom and what it is about: the participant; the proxy, builtin or the user's; the number of our endpoint as its entity id
-has it; where the message begins in our own memory, its words behind its length, in bits that are zero here, and how many
-they are."""
+"""Whom and what it is about: the participant; the proxy, builtin or the user's; the number of our endpoint; where the
+message begins in our own memory, its words behind its length, in bits that are zero here, how many they are, and how many
+octets of the last are not its own; and of the numbers from the one that is wanted on, which are missing, the first in the
+highest bit."""
 
 
 class Composer(wiring.Component):
@@ -73,7 +84,7 @@ class Composer(wiring.Component):
         m.d.comb += [
             read.addr.eq(here),
             read.en.eq(~in_message),
-            self.which.eq(argument[:4]),
+            self.which.eq(argument[:REGISTER_BITS]),
         ]
         m.d.sync += [
             self.push.eq(ready[-1]),
@@ -112,8 +123,16 @@ class Composer(wiring.Component):
                     m.d.sync += sources[0].eq(from_peers)
                 with m.Case(Op.REGISTER.value):
                     m.d.sync += literals[0].eq(self.register)
+                with m.Case(Op.WRITER.value):
+                    number = Mux(subject.builtin, subject.kind[0], subject.local)
+                    m.d.comb += self.own.addr.eq(self._own.writer(number, argument[:2], subject.builtin))
+                    m.d.sync += sources[0].eq(from_own)
                 with m.Case(Op.ENTITY.value):
-                    m.d.sync += literals[0][16:24].eq(subject.entity)
+                    m.d.sync += literals[0][16:24].eq(subject.local + 1)
+                with m.Case(Op.PADDING.value):
+                    m.d.sync += literals[0][24:26].eq(subject.padding)
+                with m.Case(Op.BITMAP.value):
+                    m.d.sync += literals[0].eq(subject.missing)
                 with m.Case(Op.LENGTH.value):
                     m.d.sync += literals[0][16:].eq(argument[16:32] + Cat(C(0, 2), subject.words[:14]))
                 with m.Case(Op.MESSAGE.value):

@@ -11,6 +11,7 @@ from amaranth.lib.wiring import In, Out, connect, flipped
 
 from roslet.gateware.fifo import MessageRegister
 from roslet.gateware.meta import ADDRESSES, UDP_RX, UDP_TX, LookupSignature
+from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.composer import Composer
 from roslet.gateware.rtps.discovery import Discovery
 from roslet.gateware.rtps.outbox import HEADER, Outbox
@@ -76,7 +77,8 @@ class Participant(wiring.Component):
             words = [int.from_bytes(octets[at : at + 4], "little") for at in range(0, len(octets), 4)]
             at = own.samples[n] + own.stride(local) * (1 % local.depth)
             self._init[at : at + 1 + len(words)] = [len(words) | (-len(octets) % 4) << 16, *words]
-            self._init[own.writer_address(n, 0)] = self._init[own.writer_address(n, 2)] = 1
+            self._init[own.writer_address(n, tables.WRITER_LAST)] = 1
+            self._init[own.writer_address(n, tables.WRITER_OLDEST)] = 0
         self._rom = Rom(own, domain, lease)
         most = 4 * max(self._rom.size[name] for name in self._rom.size)
         most += 4 * max((local.words for local in own.writers), default=0)
