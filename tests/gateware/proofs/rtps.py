@@ -452,8 +452,8 @@ class ComposerSpec(Spec):
     bugs = (
         Bug("count", "pushes.eq(in_message)", "pushes.eq(1)"),
         Bug("none_before", "[there.eq(0), coming.eq(0)]", "there.eq(0)"),
-        Bug("declared", "subject.words[:14]", "subject.words[1:14]"),
-        Bug("over", "(word != subject.words)", "(word != subject.words + 8)"),
+        Bug("declared", "Cat(C(0, 2), subject.words)", "Cat(C(0, 1), subject.words)"),
+        Bug("over", "(word != subject.words)", "(word != subject.words + 1)"),
     )
 
     def block(self) -> Any:

@@ -10,23 +10,26 @@ from roslet.gateware.rtps.ports import READ_LATENCY, ReadSignature
 from roslet.gateware.rtps.rom import REGISTER_BITS, WORD_BITS, Op, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 
-SUBJECT = data.StructLayout(
-    {
-        "builtin": 1,
-        "kind": 2,
-        "slot": 8,
-        "endpoint": 8,
-        "local": 8,
-        "sample": 32,
-        "words": 16,
-        "padding": 2,
-        "missing": 32,
-    }
-)
-"""Whom and what it is about: the participant; the proxy, builtin or the user's; the number of our endpoint; where the
-message begins in our own memory, its words behind its length, in bits that are zero here, how many they are, and how many
-octets of the last are not its own; and of the numbers from the one that is wanted on, which are missing, the first in the
-highest bit."""
+
+def subject_layout(peers: PeerMap, own: OwnMap) -> data.StructLayout:
+    """Whom and what it is about: the participant; the proxy, builtin or the user's; the number of our endpoint; where the
+    message begins in our own memory, its words behind its length, in bits that are zero here, how many they are, and how
+    many octets of the last are not its own; and of the numbers from the one that is wanted on, which are missing, the first
+    in the highest bit."""
+    longest = max((local.words for local in own.writers), default=0)
+    return data.StructLayout(
+        {
+            "builtin": 1,
+            "kind": 2,
+            "slot": peers.slot_bits,
+            "endpoint": peers.endpoint_bits,
+            "local": own.local_bits,
+            "sample": own.address_bits,
+            "words": max(1, longest.bit_length()),
+            "padding": 2,
+            "missing": 32,
+        }
+    )
 
 
 class Composer(wiring.Component):
@@ -46,7 +49,7 @@ class Composer(wiring.Component):
                 "start": In(1),
                 "which": Out(REGISTER_BITS),
                 "register": In(32),
-                "subject": In(SUBJECT),
+                "subject": In(subject_layout(peers, own)),
                 "peers": Out(ReadSignature(peers.address_bits)),
                 "own": Out(ReadSignature(own.address_bits)),
                 "push": Out(1),
@@ -68,7 +71,7 @@ class Composer(wiring.Component):
         coming, there = Signal(), Signal()
         item = Signal(WORD_BITS)
         argument, op = item[:32], item[32:]
-        word = Signal(16)  # of the message
+        word = Signal.like(subject.words)  # of the message
         in_message = Signal()
         m.d.comb += in_message.eq(there & (op == Op.MESSAGE.value) & (word != subject.words))
 
@@ -134,7 +137,7 @@ class Composer(wiring.Component):
                 with m.Case(Op.BITMAP.value):
                     m.d.sync += literals[0].eq(subject.missing)
                 with m.Case(Op.LENGTH.value):
-                    m.d.sync += literals[0][16:].eq(argument[16:32] + Cat(C(0, 2), subject.words[:14]))
+                    m.d.sync += literals[0][16:].eq(argument[16:32] + Cat(C(0, 2), subject.words))
                 with m.Case(Op.MESSAGE.value):
                     m.d.comb += [self.own.addr.eq(subject.sample | (word + 1)), pushes.eq(in_message)]
                     m.d.sync += [sources[0].eq(from_own), word.eq(word + 1)]

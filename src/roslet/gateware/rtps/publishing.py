@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from amaranth.hdl import Array, C, Cat, Module, Signal, Value
+from amaranth.hdl import Array, C, Module, Signal, Value
 
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.parameters import GROUP, USER_GROUP_PORT
@@ -33,7 +33,7 @@ def publish(
         item.eq(Array(Value.cast(one.payload) for one in streams)[its]),
         valid.eq(Array(one.valid for one in streams)[its]),
     ]
-    most = work.choose([C(one.words, 16) for one in own.writers])
+    most = work.choose([C(one.words, len(words)) for one in own.writers])
     reliable = work.choose([C(one.reliable, 1) for one in own.writers])
     long, full = Signal(), Signal()
     carried, all_kept = Signal(), Signal()
@@ -65,7 +65,7 @@ def publish(
             with m.If(full):
                 m.d.sync += long.eq(1)
             with m.Else():
-                m.d.sync += [words.eq(words + 1), full.eq((words + 1)[:16] == most)]
+                m.d.sync += [words.eq(words + 1), full.eq((words + 1)[: len(words)] == most)]
                 m.d.comb += ports.write.en.eq(1)
         m.d.comb += [ports.write.addr.eq(subject.sample | (words + 1)), ports.write.data.eq(item.data)]
         with m.If(valid & item.end):
@@ -80,7 +80,7 @@ def publish(
         m.d.comb += [
             ports.write.en.eq(1),
             ports.write.addr.eq(subject.sample),
-            ports.write.data.eq(Cat(words, subject.padding)),
+            ports.write.data.eq(words | subject.padding << 16),
         ]
         work.ask_own(m, tables.WRITER_LAST)
         m.next = "STORE"
@@ -121,7 +121,7 @@ def publish(
             work.reliable.eq(theirs[tables.INFO_RELIABLE]),
             work.oldest.eq(kept),
         ]
-        its_writer = theirs[tables.INFO_LOCAL : tables.INFO_LOCAL + 8]
+        its_writer = theirs[tables.INFO_LOCAL : tables.INFO_LOCAL + len(local)]
         m.next = "NEXT READER"
         with m.If(~theirs[tables.INFO_WRITER] & (its_writer == local)):
             m.next = "READER IP"

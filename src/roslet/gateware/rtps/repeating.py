@@ -95,7 +95,7 @@ def repeat(m: Module, work: Sending, asked: Value, writers: Value, readers: Valu
     with m.State("KEPT SAMPLE"):
         m.next = "SAMPLE"
     with m.State("SAMPLE"):
-        m.d.sync += [subject.words.eq(ports.own.data[:16]), subject.padding.eq(ports.own.data[16:18])]
+        m.d.sync += [subject.words.eq(ports.own.data), subject.padding.eq(ports.own.data[16:18])]
         work.compose(m, work.rom.start["message"], "NEXT")
     with m.State("NEXT"):
         m.d.sync += work.age.eq(work.age - 1)

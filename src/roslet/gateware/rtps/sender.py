@@ -7,7 +7,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.rtps import tables
-from roslet.gateware.rtps.composer import SUBJECT
+from roslet.gateware.rtps.composer import subject_layout
 from roslet.gateware.rtps.parameters import GROUP
 from roslet.gateware.rtps.ports import ReadSignature, WriteSignature
 from roslet.gateware.rtps.publishing import publish
@@ -66,7 +66,7 @@ class Sender(wiring.Component):
                 "done": In(1),
                 "which": In(REGISTER_BITS),
                 "register": Out(32),
-                "subject": Out(SUBJECT),
+                "subject": Out(subject_layout(peers, own)),
                 "room": In(1),
                 "busy": In(1),
                 "finish": Out(1),

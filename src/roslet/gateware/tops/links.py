@@ -157,7 +157,7 @@ class Ethernet:
             fragments=fragments,
             fragment_size=size,
         )
-        return EthernetLink(Mac(self.phy, RX_QUEUE), clk_hz), stack
+        return EthernetLink(Mac(self.phy, RX_QUEUE), clk_hz, tx_depth=2), stack
 
     def settings(self, clk_hz: float) -> dict[str, int]:
         """Constant inputs of the stack that other links do not have."""
