@@ -189,10 +189,10 @@ class SubmessagesSpec(Spec):
     """`user`: a message of the user's ends well only where the body does, and `word`: is made of its words. `over`: a
     body's end is not taken before discovery has taken its. `kept`: but
     for the scratch area, something is written only at a good end: nothing is kept of a datagram that ends badly. `taken`:
-    what comes is taken within some cycles, of all but a GAP, which may take one for each bit."""
+    what comes is taken within some cycles, of all but a GAP, which takes one more for each bit of its first word."""
 
     module = submessages
-    quick, deep = 27, 34
+    quick, deep = 30, 36
     bugs = (
         Bug("user.steady", "m.d.comb += i.ready.eq(user.ready)", "m.d.comb += i.ready.eq(1)"),
         Bug(
@@ -202,7 +202,7 @@ class SubmessagesSpec(Spec):
         ),
         Bug(
             "user.meta_steady",
-            "self.user.meta.reader.eq(info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8])",
+            "self.user.meta.reader.eq(local)",
             "self.user.meta.reader.eq(self.peers.data)",
         ),
         Bug(
@@ -227,15 +227,11 @@ class SubmessagesSpec(Spec):
             "with m.If(~i.payload.end):\n                    m.d.comb += i.ready.eq(self.discovery.stream.ready)",
             "with m.If(1):\n                    m.d.comb += i.ready.eq(self.discovery.stream.ready)",
         ),
-        Bug(
-            "kept",
-            '                with m.If(good):\n                    m.next = "WRITE LOW"\n',
-            '                with m.If(ended):\n                    m.next = "WRITE LOW"\n',
-        ),
+        Bug("kept", "with m.If(wrong | i.payload.bad):", "with m.If(wrong):"),
         Bug(
             "taken",
-            'with m.If(~meta.known):\n                    m.next = "FOUND"',
-            'with m.If(~meta.known):\n                    m.next = "FIND"',
+            'with m.If(~meta.known):\n                        m.next = "FOUND"',
+            'with m.If(~meta.known):\n                        m.next = "FIND"',
         ),
     )
 
@@ -254,14 +250,14 @@ class SubmessagesSpec(Spec):
         word = user.valid & ~user.payload.end
         scratch = dut.write.addr[4:] == peers._scratch >> 4
         m.d.comb += [
-            Assume(dut.i.meta.id != GAP, "no GAP"),
             Assert(~good | (ended & ~i.payload.bad), "user"),
             Assert(~word | (i.valid & ~i.payload.end & (user.payload.data == i.payload.data)), "word"),
             Assert(~rules.ended | ~(lists.within | dut.discovery.stream.valid), "over"),
             Assert(~dut.write.en | scratch | (ended & ~i.payload.bad), "kept"),
             Cover(dut.write.en & ~scratch, "written"),
         ]
-        waits(m, i, 15, user.ready & dut.discovery.stream.ready, "taken")
+        free = user.ready & dut.discovery.stream.ready & (dut.i.meta.id != GAP)
+        waits(m, i, 18, free, "taken")
 
 
 class ParametersSpec(Spec):
