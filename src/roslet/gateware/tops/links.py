@@ -146,6 +146,7 @@ class Ethernet:
             echo_data=fragments * size - icmp.SIZE,
             fragments=fragments,
             fragment_size=size,
+            longest=longest,
         )
         return EthernetLink(Mac(self.phy), clk_hz), stack
 
