@@ -21,7 +21,7 @@ from roslet.wire.net import ethernet, igmp, ipv4
 TICKS = 160
 """A second: 16 to the tenth of a second in which delays are given, so that they differ more finely than that."""
 
-UNSOLICITED, V1 = 100, 100
+RESPONSE = 100
 """Tenths of a second: Unsolicited Report Interval (RFC 2236, 8.10), Query Response Interval of version 1 (8.3, and 4)."""
 
 REPEATS = 2
@@ -43,8 +43,9 @@ _IPV4 = {
     "ttl": 1,  # RFC 2236, 2
     "protocol": ipv4.IGMP,
 }
+_SOURCE = next(field.offset for field in ipv4.FIELDS if field.name == "source")
 _CHECKSUMS = 5
-"""Bits 3 to 1 of the places of both checksums, 10 and 26, and of no other: they are summed as zeros."""
+"""Bits 3 to 1 of the places of both checksums, 10 and 26, and of no other."""
 
 _IGMP = {"type": igmp.REPORT, "max_response": 0}
 
@@ -67,15 +68,17 @@ class Igmp(wiring.Component):
 
     A group is reported at once when it becomes valid, or `enable` rises, and again twice, each time some random time later,
     up to 10 s. A query, of all or of one, is answered after a random time up to what it allows, or 10 s where it says 0 as
-    those of version 1 do; of a later query while one waits the earlier of both times holds. One time is kept for all groups:
-    those that are to be reported then go out one after another. Random times are by a shift register and the last octets of
-    the hardware address, in steps of 1/160 s of `clock_hz`.
+    those of version 1 do; a later query while one waits takes another only if what is left is more than it allows (RFC
+    2236, 3), and one that comes while a time is being chosen, which takes as many cycles as numbers that are too large come
+    before, is answered at once. One time is kept for all groups: those that are to be reported then go out one after
+    another. Random times are by a shift register and the last octets of the hardware address, in steps of 1/160 s of
+    `clock_hz`.
 
     224.0.0.1 must not be among the groups: nobody reports it. Not there: suppression of a report when another host's is
     heard, which IGMPv3 gave up (RFC 3376, A.2) and switches that snoop do without; leave messages, as `enable` and `valid`
     stay high; and the older and newer versions: a query of either is answered with a report of version 2.
 
-    `i` is always ready. A report begins 42 cycles after its time has come. `drop_igmp`: see `IgmpRx`.
+    `i` is always ready. A report begins 13 cycles after its time has come. `drop_igmp`: see `IgmpRx`.
     """
 
     def __init__(self, clock_hz: int, count: int = 1) -> None:
@@ -123,24 +126,26 @@ class Igmp(wiring.Component):
         m.d.comb += delay.eq(noise ^ self.addresses.mac[-12:])
         with m.If(running & tick & (left != 0)):
             m.d.sync += left.eq(left - 1)
-        with m.If(choosing & (delay[4:] < limit)):
-            m.d.sync += [choosing.eq(0), running.eq(1)]
-            with m.If(~running | (delay < left)):
+        with m.If(choosing):
+            within = Mux(running, left, delay)[4:] < limit
+            m.d.sync += [running.eq(within), choosing.eq(~within)]
+            with m.If(~running):
                 m.d.sync += left.eq(delay)
         over = running & (left == 0)
+        asked = rx.query & self.enable
+        again = over & (due == 0) & (repeats != 0)
         with m.If(over & (due == 0)):
             m.d.sync += running.eq(0)
-            with m.If(repeats != 0):
-                m.d.sync += [repeats.eq(repeats - 1), choosing.eq(1), limit.eq(UNSOLICITED)]
-                m.d.comb += more.eq(valid)
-        with m.If(rx.query & self.enable):
-            allowed = Mux(rx.max_response == 0, V1, rx.max_response)
+        with m.If(again):
+            m.d.sync += repeats.eq(repeats - 1)
+        m.d.comb += more.eq(Mux(asked, rx.named, valid & again.replicate(self._count)))
+        with m.If(asked | again):
             m.d.sync += choosing.eq(1)
-            with m.If(~choosing | (allowed < limit)):
-                m.d.sync += limit.eq(allowed)
-            m.d.comb += more.eq(rx.named)
-        with m.If(joining != 0):
-            m.d.sync += [running.eq(1), left.eq(0), repeats.eq(REPEATS)]
+            m.d.sync += limit.eq(Mux(asked & (rx.max_response != 0), rx.max_response, RESPONSE))
+        with m.If(joining.any() | (asked & choosing)):
+            m.d.sync += [running.eq(1), left.eq(0)]
+        with m.If(joining.any()):
+            m.d.sync += repeats.eq(REPEATS)
 
         self._compose(m, over, due, sent)
         return m
@@ -151,64 +156,45 @@ class Igmp(wiring.Component):
         m.submodules.sum = total = SerialSum()
         which = Signal(range(self._count))
         group = Array(group.ip for group in self.groups)[which] if self._count > 1 else self.groups[0].ip
-        header_sum = Signal(16)
-        settling, settled = Signal(), Signal(range(SerialSum.SETTLE + 1))
         at = Signal(range(HEADER + igmp.SIZE))
 
+        # The checksums' own octets are summed as zeros. Of the message's sum the destination has the group, so that all of it
+        # is summed when its checksum's turn has come.
         fields = [
             *_fields(
                 ipv4.FIELDS,
-                {
-                    **_IPV4,
-                    "checksum": ~header_sum,
-                    "source": Value.cast(self.addresses.ip),
-                    "destination": group,
-                },
+                {**_IPV4, "checksum": 0, "source": Value.cast(self.addresses.ip), "destination": group},
             ),
             Const(multicast.number(ROUTER_ALERT), 32),
-            *_fields(igmp.FIELDS, {**_IGMP, "checksum": ~total.sum, "group": group}),
+            *_fields(igmp.FIELDS, {**_IGMP, "checksum": 0, "group": group}),
         ]
         octet = pick(octets(Cat(fields)), at)
+        spelling = at[1:4] == _CHECKSUMS
+        in_source, in_alert = (at[2:] == n // 4 for n in (_SOURCE, ipv4.SIZE))
         m.d.comb += [
-            total.data.eq(Mux(settling | (at[1:4] == _CHECKSUMS), 0, octet)),
-            o.payload.data.eq(octet),
+            total.data.eq(octet),
+            o.payload.data.eq(Mux(spelling, ~total.result, octet)),
             self.o.meta.destination.eq(multicast.hardware_address(group)),
             self.o.meta.type.eq(ethernet.IPV4),
         ]
         with m.FSM():
             with m.State("IDLE"):
                 m.d.comb += total.clear.eq(1)
-                m.d.sync += at.eq(0)
+                m.d.sync += at.eq(_SOURCE)
                 for n in reversed(range(self._count)):
                     with m.If(due[n]):
                         m.d.sync += which.eq(n)
                 with m.If(over & due.any()):
-                    m.next = "HEADER"
-            with m.State("HEADER"):
+                    m.next = "ADDRESSES"
+            # What comes after the header's checksum is summed before the packet begins.
+            with m.State("ADDRESSES"):
                 m.d.comb += total.add.eq(1)
                 m.d.sync += at.eq(at + 1)
                 with m.If(at == HEADER - 1):
-                    m.next = "HEADER SUM"
-            with m.State("HEADER SUM"):
-                m.d.comb += [settling.eq(1), total.add.eq(1)]
-                m.d.sync += [settled.eq(settled + 1), header_sum.eq(total.sum)]
-                with m.If(settled == SerialSum.SETTLE):
-                    m.d.comb += total.clear.eq(1)
-                    m.d.sync += settled.eq(0)
-                    m.next = "MESSAGE"
-            with m.State("MESSAGE"):
-                m.d.comb += total.add.eq(1)
-                m.d.sync += at.eq(at + 1)
-                with m.If(at == HEADER + igmp.SIZE - 1):
-                    m.next = "MESSAGE SUM"
-            with m.State("MESSAGE SUM"):
-                m.d.comb += [settling.eq(1), total.add.eq(1)]
-                m.d.sync += [settled.eq(settled + 1), at.eq(0)]
-                with m.If(settled == SerialSum.SETTLE - 1):
-                    m.d.sync += settled.eq(0)
+                    m.d.sync += at.eq(0)
                     m.next = "SEND"
             with m.State("SEND"):
-                m.d.comb += o.valid.eq(1)
+                m.d.comb += [o.valid.eq(1), total.clear.eq(in_source), total.add.eq(o.ready & ~in_alert)]
                 with m.If(o.ready):
                     m.d.sync += at.eq(at + 1)
                     with m.If(at == HEADER + igmp.SIZE - 1):

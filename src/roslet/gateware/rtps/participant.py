@@ -82,6 +82,7 @@ class Participant(wiring.Component):
         self._rom = Rom(own, domain, lease)
         most = 4 * max(self._rom.size[name] for name in self._rom.size)
         most += 4 * max((local.words for local in own.writers), default=0)
+        self.most = most  # octets of a datagram that is sent
         depth = 512
         while depth < 2 * (HEADER + most // 4 + 1):
             depth *= 2

@@ -156,6 +156,7 @@ class Ethernet:
             echo_data=fragments * size - icmp.SIZE,
             fragments=fragments,
             fragment_size=size,
+            longest=longest,
         )
         return EthernetLink(Mac(self.phy, RX_QUEUE), clk_hz, tx_depth=2), stack
 

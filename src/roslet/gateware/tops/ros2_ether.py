@@ -114,6 +114,7 @@ class Ros2Ether(EthernetUdp):
             counters,
             groups=1,
             askers=2,
+            longest=self._participant.most,
             blocks={
                 "udp": self._switch,
                 "rtps": self._participant,
