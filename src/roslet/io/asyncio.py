@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import weakref
 
 from roslet.errors import Unsupported
@@ -24,8 +25,24 @@ class _Bridge:
         # The dictionary's key must not be kept alive by its value.
         self._loop = weakref.ref(loop)
         self._handle: asyncio.TimerHandle | None = None
+        self._thread = threading.get_ident()
         loop.add_reader(reactor.fileno(), self._turn)
         loop.call_soon(self._turn)
+        with reactor.lock:
+            reactor.watchers.append(self._spun)
+
+    def _spun(self) -> bool:
+        """Another thread has served users and stopped: it may have read what was to tell us of a timer. False when the loop
+        is no more."""
+        loop = self._loop()
+        if loop is None or loop.is_closed():
+            return False
+        if threading.get_ident() != self._thread:
+            try:
+                loop.call_soon_threadsafe(self._turn)
+            except RuntimeError:  # closed since
+                return False
+        return True
 
     def _turn(self) -> None:
         reactor, loop = self._reactor, self._loop()

@@ -169,6 +169,8 @@ class Reactor:
         self._thread: threading.Thread | None = None
         self._error: BaseException | None = None
         self._stopped = False
+        # Called when a thread that served users has stopped, until they return false.
+        self.watchers: list[Callable[[], bool]] = []
         # Seconds; 0 turns it off, as on a machine where the other side needs this very processor to answer.
         self.busy_wait = BUSY_WAIT if _processors() > 1 else 0.0
         self._brisk = False  # whether the last sleep was a short one
@@ -284,6 +286,8 @@ class Reactor:
                 self._spinners -= 1
                 if not self._spinners:
                     self._idle.set()
+                if user and self.watchers:
+                    self.watchers[:] = [watcher for watcher in self.watchers if watcher()]
 
     def _take_turn(self, predicate: Callable[[], object], end: float | None, user: bool) -> bool:
         """Wait for the turn; false where `predicate()` came true, or the time was up, before. The caller has counted itself
