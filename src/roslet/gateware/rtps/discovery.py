@@ -146,6 +146,7 @@ class Discovery(wiring.Component):
             with m.State("KEY"):
                 m.next = "ENTITY"
             with m.State("ENTITY"):
+                m.d.sync += self._endpoint.eq(0)
                 m.next = "SCAN"
                 with m.If(~read.guid):
                     m.d.sync += self._entity.eq(self.peers.data)

@@ -239,6 +239,7 @@ class Submessages(wiring.Component):
                 m.d.sync += [for_any.eq(empty), reader_number.eq(word[16:24])]
                 take("FIND")
             with m.State("FIND"):  # `word` is the id of the peer's endpoint
+                m.d.sync += endpoint.eq(0)
                 with m.If(came):
                     m.next = "SCAN"
                     with m.If(~meta.known):
