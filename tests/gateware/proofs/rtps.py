@@ -92,7 +92,7 @@ class QueueSpec(Spec):
 
 SKIPPED = """with m.If(left[-1] & ~to_end):
                     m.next = "{}"
-                with m.Elif(i.valid & i.payload.end):"""
+                with m.Elif(ended):"""
 
 
 class WalkerSpec(Spec):
@@ -115,7 +115,7 @@ class WalkerSpec(Spec):
             "o.payload.data.eq(word), o.payload.bad.eq(i.payload.bad | (word == 5)),",
         ),
         Bug("o.meta_steady", "self.o.meta.known.eq(is_known)", "self.o.meta.known.eq(i.valid)"),
-        Bug("length", "left = Signal(15)", "left = Signal(14)"),
+        Bug("length", "left, less = Signal(15), Signal(15)", "left, less = Signal(14), Signal(14)"),
         Bug("data", "o.payload.data.eq(word),", "o.payload.data.eq(word | 1),"),
         Bug("good", "o.payload.bad.eq(~self.good | missing)", "o.payload.bad.eq(~self.good)"),
         Bug("heard", "~o.payload.bad & is_known", "is_known"),
@@ -192,7 +192,7 @@ class SubmessagesSpec(Spec):
     what comes is taken within some cycles, of all but a GAP, which takes one more for each bit of its first word."""
 
     module = submessages
-    quick, deep = 30, 36
+    quick, deep = 28, 36
     bugs = (
         Bug("user.steady", "m.d.comb += i.ready.eq(user.ready)", "m.d.comb += i.ready.eq(1)"),
         Bug(
