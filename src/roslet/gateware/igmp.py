@@ -12,7 +12,7 @@ from roslet.gateware import multicast
 from roslet.gateware.checksum import SerialSum
 from roslet.gateware.header import wire_order
 from roslet.gateware.igmp_rx import IgmpRx
-from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, IPV4_RX
+from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, HOP, IPV4_RX
 from roslet.gateware.octets import octets, pick
 from roslet.gateware.stream import FrameSignature
 from roslet.wire.fields import Field
@@ -156,10 +156,10 @@ class Igmp(wiring.Component):
         m.submodules.sum = total = SerialSum()
         which = Signal(range(self._count))
         group = Array(group.ip for group in self.groups)[which] if self._count > 1 else self.groups[0].ip
-        at = Signal(range(HEADER + igmp.SIZE))
+        at = Signal(range(HEADER + igmp.SIZE + HOP))  # the destination of the frame is last, and sent first
 
-        # The checksums' own octets are summed as zeros. Of the message's sum the destination has the group, so that all of it
-        # is summed when its checksum's turn has come.
+        # The checksums' own octets are summed as zeros. The group is added to the message's sum as it passes as the
+        # destination: so all is summed when that checksum's turn has come.
         fields = [
             *_fields(
                 ipv4.FIELDS,
@@ -167,14 +167,14 @@ class Igmp(wiring.Component):
             ),
             Const(multicast.number(ROUTER_ALERT), 32),
             *_fields(igmp.FIELDS, {**_IGMP, "checksum": 0, "group": group}),
+            multicast.hardware_address(group),
         ]
         octet = pick(octets(Cat(fields)), at)
-        spelling = at[1:4] == _CHECKSUMS
+        spelling = (at[1:4] == _CHECKSUMS) & ~at[5]
         in_source, in_alert = (at[2:] == n // 4 for n in (_SOURCE, ipv4.SIZE))
         m.d.comb += [
             total.data.eq(octet),
             o.payload.data.eq(Mux(spelling, ~total.result, octet)),
-            self.o.meta.destination.eq(multicast.hardware_address(group)),
             self.o.meta.type.eq(ethernet.IPV4),
         ]
         with m.FSM():
@@ -191,12 +191,15 @@ class Igmp(wiring.Component):
                 m.d.comb += total.add.eq(1)
                 m.d.sync += at.eq(at + 1)
                 with m.If(at == HEADER - 1):
-                    m.d.sync += at.eq(0)
+                    m.d.sync += at.eq(HEADER + igmp.SIZE)
                     m.next = "SEND"
             with m.State("SEND"):
-                m.d.comb += [o.valid.eq(1), total.clear.eq(in_source), total.add.eq(o.ready & ~in_alert)]
+                m.d.comb += [o.valid.eq(1), total.clear.eq(in_source)]
+                m.d.comb += total.add.eq(o.ready & ~in_alert & ~at[5])
                 with m.If(o.ready):
                     m.d.sync += at.eq(at + 1)
+                    with m.If(at == HEADER + igmp.SIZE + HOP - 1):
+                        m.d.sync += at.eq(0)
                     with m.If(at == HEADER + igmp.SIZE - 1):
                         m.next = "END"
             with m.State("END"):
