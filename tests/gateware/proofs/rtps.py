@@ -35,21 +35,17 @@ class QueueSpec(Spec):
     module = queue
     quick, deep = 13, 18
     bugs = (
-        Bug("o.steady", "with m.If(~o.valid | o.ready):", "with m.If(1):"),
+        Bug("o.steady", "with m.If(~o.valid):", "with m.If(1):"),
         Bug(
             "o.bad_only_at_end",
-            "item.data.eq(held), words.w_en.eq(~long)",
-            "item.data.eq(held), item.bad.eq(1), words.w_en.eq(1)",
+            "o.payload.bad.eq(~fetched & ~self.good)",
+            "o.payload.bad.eq(~self.good)",
         ),
-        Bug("octet", "item.data.eq(Cat(held, octet))", "item.data.eq(Cat(held[8:], octet, octet))"),
-        Bug("words", "Const(0, 2) - last", "last"),
-        Bug("verdict", "bad = i.payload.bad | long", "bad = long"),
-        Bug(
-            "kept",
-            "room = count != self._depth - SPARE",
-            "room = count != self._depth - SPARE - 1",
-        ),
-        Bug("known", "self.good.eq(~bad)", "self.good.eq(1)"),
+        Bug("octet", "held.word_select(at, 8)", "held.word_select(at & 1, 8)"),
+        Bug("words", "padding.eq(-at)", "padding.eq(at)"),
+        Bug("verdict", "bad = i.payload.bad | too_long", "bad = too_long"),
+        Bug("kept", "full.eq(count == self._depth)", "full.eq(count == self._depth - 1)"),
+        Bug("known", "o.payload.bad.eq(~fetched & ~self.good)", "o.payload.bad.eq(0)"),
     )
 
     def block(self) -> Any:
