@@ -35,21 +35,17 @@ class QueueSpec(Spec):
     module = queue
     quick, deep = 13, 18
     bugs = (
-        Bug("o.steady", "with m.If(~o.valid | o.ready):", "with m.If(1):"),
+        Bug("o.steady", "with m.If(~o.valid):", "with m.If(1):"),
         Bug(
             "o.bad_only_at_end",
-            "item.data.eq(held), words.w_en.eq(~long)",
-            "item.data.eq(held), item.bad.eq(1), words.w_en.eq(1)",
+            "o.payload.bad.eq(~fetched & ~self.good)",
+            "o.payload.bad.eq(~self.good)",
         ),
-        Bug("octet", "item.data.eq(Cat(held, octet))", "item.data.eq(Cat(held[8:], octet, octet))"),
-        Bug("words", "Const(0, 2) - last", "last"),
-        Bug("verdict", "bad = i.payload.bad | long", "bad = long"),
-        Bug(
-            "kept",
-            "room = count != self._depth - SPARE",
-            "room = count != self._depth - SPARE - 1",
-        ),
-        Bug("known", "self.good.eq(~bad)", "self.good.eq(1)"),
+        Bug("octet", "held.word_select(at, 8)", "held.word_select(at & 1, 8)"),
+        Bug("words", "padding.eq(-at)", "padding.eq(at)"),
+        Bug("verdict", "bad = i.payload.bad | too_long", "bad = too_long"),
+        Bug("kept", "full.eq(count == self._depth)", "full.eq(count == self._depth - 1)"),
+        Bug("known", "o.payload.bad.eq(~fetched & ~self.good)", "o.payload.bad.eq(0)"),
     )
 
     def block(self) -> Any:
@@ -347,28 +343,23 @@ class OutboxSpec(Spec):
 
     module = outbox
     quick, deep = 15, 20
-    scale = (("added.eq(total + pair[:16] + carries[1])", "added.eq(0)"),)
+    scale = (("added.eq((Cat(C(1, 1), total) + Cat(carry, pair[:16]))[1:])", "added.eq(0)"),)
     bugs = (
-        Bug("o.steady", "o.valid.eq(~asking & found)", "o.valid.eq(~asking & found & ~lookup.mac[0])"),
+        Bug("o.steady", "o.valid.eq(found)", "o.valid.eq(found & ~lookup.mac[0])"),
         Bug(
             "o.bad_only_at_end",
-            "o.payload.end.eq(left == 0)",
-            "o.payload.bad.eq(left == 1), o.payload.end.eq(left == 0)",
+            "o.payload.end.eq(over)",
+            "o.payload.bad.eq(lane == 1), o.payload.end.eq(over)",
         ),
         Bug("o.meta_steady", "meta.source_port.eq(self.source_port)", "meta.source_port.eq(self.port)"),
-        Bug(
-            "length", "octets.eq(Cat(C(0, 2), read.data[16:30]))", "octets.eq(Cat(C(0, 1), read.data[16:30]))"
-        ),
-        Bug(
-            "where",
-            "write.addr.eq(begin), write.data.eq(self.ip)",
-            "write.addr.eq(begin), write.data.eq(self.ip + 1)",
-        ),
-        Bug("content", "m.d.sync += self.room.eq(0)", "m.d.sync += self.source_port.eq(0) if 0 else []"),
+        Bug("length", "meta.length.eq(Cat(C(0, 2), count))", "meta.length.eq(Cat(C(0, 1), count))"),
+        Bug("where", "[ip.eq(self.ip), ", "[ip.eq(self.ip + 1), "),
+        Bug("where", "meta.destination.eq(address)", "meta.destination.eq(ip)"),
+        Bug("content", "read.addr.eq(Cat(at, ~place))", "read.addr.eq(Cat(at, place))"),
     )
 
     def block(self) -> Any:
-        return self.gates.Outbox(12, 8, 2)
+        return self.gates.Outbox(12, 8, 1)
 
     def properties(self, m: Module) -> None:
         dut = self.dut
@@ -377,9 +368,6 @@ class OutboxSpec(Spec):
         assume_steady(m, dut.source_port)
         # Who writes
         written, number = Signal(3), Signal(3)
-        before = Signal()
-        ip, port = Signal(32), Signal(16)
-        m.d.sync += [ip.eq(dut.ip), port.eq(dut.port), before.eq(dut.busy | dut.finish)]
         with m.If(dut.finish):
             m.d.sync += [written.eq(0), number.eq(number + ~number.all())]
         with m.Elif(dut.push):
@@ -397,7 +385,6 @@ class OutboxSpec(Spec):
             Assume(~dut.push | (~dut.busy & (written < 3)), "writes within"),
             Assume(~dut.push | (written != 0) | dut.room, "begins with room"),
             Assume(~dut.finish | (~dut.busy & (dut.push | (written != 0))), "finishes what it began"),
-            Assume(~before | ((dut.ip == ip) & (dut.port == port)), "says where"),
             Assume(~lookup.done | lookup.valid, "answers"),
             Assume(~(lookup.found & lookup.failed), "one answer"),
         ]

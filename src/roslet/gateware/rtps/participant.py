@@ -14,7 +14,7 @@ from roslet.gateware.meta import ADDRESSES, UDP_RX, UDP_TX, LookupSignature
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.composer import Composer
 from roslet.gateware.rtps.discovery import Discovery
-from roslet.gateware.rtps.outbox import HEADER, Outbox
+from roslet.gateware.rtps.outbox import Outbox
 from roslet.gateware.rtps.ports import DISCOVERY, SUBMESSAGE, USER, WriteSignature
 from roslet.gateware.rtps.queue import DatagramQueue
 from roslet.gateware.rtps.rom import Rom
@@ -84,7 +84,7 @@ class Participant(wiring.Component):
         most += 4 * max((local.words for local in own.writers), default=0)
         self.most = most  # octets of a datagram that is sent
         depth = 512
-        while depth < 2 * (HEADER + most // 4 + 1):
+        while depth < 2 * (most // 4 + 1):
             depth *= 2
         self._users, self._readers = len(writers), len(readers)
         self._blocks: dict[str, Any] = {
