@@ -397,3 +397,46 @@ def test_the_background_thread_takes_no_user_call_from_the_descriptor(loop: Reac
     assert loop.run_until(lambda: done, 1.0)
     loop.run_turn(0.0)
     assert not asked()
+
+
+class Arrivals:
+    """A poller in time of its own: input comes so many seconds after the one before, and is taken at once."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, loop: Reactor) -> None:
+        self.now, self.looks, self._due, self._loop = 0.0, 0, 0.0, loop
+        loop.busy_wait = select.BUSY_WAIT
+        monkeypatch.setattr(select, "monotonic", lambda: self.now)
+
+    def poll(self, pause: float) -> list[tuple[int, int]]:
+        if pause == 0.0:
+            self.looks += 1
+            pause = 10e-6
+        ready = self.now + pause >= self._due
+        self.now = max(self.now, self._due) if ready else self.now + pause
+        return [(0, READ)] if ready else []
+
+    def after(self, seconds: float) -> int:
+        """How often it was looked for input that came then."""
+        self.looks, self._due = 0, self.now + seconds
+        assert self._loop._wait(self, 1.0)
+        return self.looks
+
+
+def test_after_looks_in_vain_quick_input_is_soon_looked_for_again(
+    loop: Reactor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    arrivals = Arrivals(monkeypatch, loop)
+    for _ in range(2000):  # each second one comes as a look is over
+        arrivals.after(100e-6)
+        arrivals.after(400e-6)
+    assert loop._skips > 20
+    quick = [arrivals.after(100e-6) for _ in range(10)]
+    assert quick[-1] and not quick[0]
+
+
+def test_input_at_middling_intervals_is_seldom_looked_for(
+    loop: Reactor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    arrivals = Arrivals(monkeypatch, loop)
+    looked = [arrivals.after(400e-6) for _ in range(3000)]
+    assert sum(1 for looks in looked if looks) < 20

@@ -44,6 +44,8 @@ BUSY_WAIT = 250e-6
 BRISK = 500e-6
 # After this many looks in vain the loop looks once in 2 to this power sleeps.
 MAX_VAIN = 10
+# After so many sleeps running that were shorter than BUSY_WAIT it looks again in any case: it would not have been in vain.
+STREAK = 4
 # Seconds the background thread waits after a spin before it takes the loop back.
 LINGER = 0.005
 
@@ -176,6 +178,7 @@ class Reactor:
         self._brisk = False  # whether the last sleep was a short one
         self._vain = 0  # looks in vain since the last good one
         self._skips = 0  # sleeps before the next look
+        self._streak = 0  # sleeps running that a look would have spared
         # Two, since a loop that serves control traffic only must not take from `fileno` that a user's call waits.
         self._waker, self._user_waker = _Waker(), _Waker()
         self.register(self._waker.fd, self._waker.heard)
@@ -417,7 +420,12 @@ class Reactor:
                 pause = max(0.0, pause - self.busy_wait)
         begin = monotonic()
         ready = poller.poll(pause * _SCALE)
-        self._brisk = bool(ready) and monotonic() - begin < BRISK and self.busy_wait > 0.0
+        slept = monotonic() - begin
+        self._brisk = bool(ready) and slept < BRISK and self.busy_wait > 0.0
+        if self._skips:
+            self._streak = self._streak + 1 if ready and slept < self.busy_wait else 0
+            if self._streak == STREAK:
+                self._streak = self._skips = 0
         return ready
 
     def _run_soon(self, queue: deque[Callable[[], None]], locked: bool) -> None:
