@@ -67,9 +67,9 @@ def repeat(m: Module, work: Sending, asked: Value, writers: Value, readers: Valu
     with m.State("REPEAT"):
         with m.If(work.age > work.oldest):
             m.d.sync += work.age.eq(work.oldest)
+        m.d.sync += work.chosen.eq(Register.NUMBER)
         m.next = "AGED"
     with m.State("AGED"):
-        m.d.comb += work.which.eq(Register.NUMBER)
         m.d.sync += [over.eq(work.age < ask_to), subject.sample.eq(work.sample(work.number[:16]))]
         with m.If(subject.builtin):
             m.d.sync += subject.local.eq(work.oldest - work.age)
@@ -98,7 +98,7 @@ def repeat(m: Module, work: Sending, asked: Value, writers: Value, readers: Valu
         m.d.sync += [subject.words.eq(ports.own.data), subject.padding.eq(ports.own.data[16:18])]
         work.compose(m, work.rom.start["message"], "NEXT")
     with m.State("NEXT"):
-        m.d.sync += work.age.eq(work.age - 1)
+        m.d.sync += [work.age.eq(work.age - 1), work.chosen.eq(Register.NUMBER)]
         m.next = "AGED"
     with m.State("HEARTBEAT"):
         work.ask_own(m, tables.WRITER_COUNT)

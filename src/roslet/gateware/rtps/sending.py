@@ -56,9 +56,10 @@ class Sending:
         )
 
     def _numbers(self, m: Module) -> None:
-        """`number`, which the composer or a state asks for: its lower word, or the higher one, which needs to know what
-        was borrowed from it, or carried, for the lower."""
-        which = self.which = Signal(2)
+        """`number`, which the composer asks for, or, while that is idle, `chosen` says: its lower word, or the higher one,
+        which needs to know what was borrowed from it, or carried, for the lower."""
+        self.chosen, self._composing = Signal(2), Signal()
+        which = Signal(2)
         high, is_number = which[0], which[1]
         self.borrowed, first_borrowed = Signal(signed(2)), Signal(signed(2))
         self._first_borrowed = first_borrowed
@@ -66,7 +67,7 @@ class Sending:
         less = Mux(is_number, self.borrowed, first_borrowed)
         difference = Signal(signed(34))
         m.d.comb += [
-            which.eq(self.ports.which),
+            which.eq(Mux(self._composing, self.ports.which, self.chosen)),
             difference.eq(Mux(high, self.last_high, self.last) - Mux(high, less, age)),
             self.ports.register.eq(difference),
         ]
@@ -125,25 +126,30 @@ class Sending:
         """Compose it for `ip` and `port`, when there is room, and go on; in state `first` first."""
         if then not in self._afterwards:
             self._afterwards.append(then)
-        m.d.sync += [self.ports.template.eq(template), self._after.eq(self._afterwards.index(then))]
+        m.d.sync += [
+            self.ports.template.eq(template),
+            self._after.eq(self._afterwards.index(then)),
+            self.chosen.eq(Register.NUMBER if first == NUMBERS else Register.FIRST),
+        ]
         m.next = first
 
     def composition(self, m: Module) -> None:
         """The states in which that happens: the last of an FSM."""
         ports = self.ports
         with m.State(NUMBERS):
-            m.d.comb += self.which.eq(Register.NUMBER)
-            m.d.sync += self.borrowed.eq(self._borrow)
+            m.d.sync += [self.borrowed.eq(self._borrow), self.chosen.eq(Register.FIRST)]
             m.next = COMPOSE
         with m.State(COMPOSE):
-            m.d.comb += self.which.eq(Register.FIRST)
             m.d.sync += self._first_borrowed.eq(self._borrow)
             with m.If(ports.room & ~ports.busy):
                 m.d.comb += ports.start.eq(1)
+                m.d.sync += self._composing.eq(1)
                 m.next = "COMPOSING"
         with m.State("COMPOSING"):
             m.d.comb += ports.finish.eq(ports.done)
-            with m.If(ports.done), m.Switch(self._after):
-                for n, state in enumerate(self._afterwards):
-                    with m.Case(n):
-                        m.next = state
+            with m.If(ports.done):
+                m.d.sync += self._composing.eq(0)
+                with m.Switch(self._after):
+                    for n, state in enumerate(self._afterwards):
+                        with m.Case(n):
+                            m.next = state
