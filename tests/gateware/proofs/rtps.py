@@ -188,7 +188,7 @@ class SubmessagesSpec(Spec):
     what comes is taken within some cycles, of all but a GAP, which takes one more for each bit of its first word."""
 
     module = submessages
-    quick, deep = 28, 36
+    quick, deep = 27, 36
     bugs = (
         Bug("user.steady", "m.d.comb += i.ready.eq(user.ready)", "m.d.comb += i.ready.eq(1)"),
         Bug(

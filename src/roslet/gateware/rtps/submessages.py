@@ -123,8 +123,9 @@ class Submessages(wiring.Component):
         endpoint = Signal(range(self._peers.endpoints))
         info = Signal(32)
         local = info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8]
+        ours = local[: max(1, (self._readers - 1).bit_length())]
         skip = Signal(15)  # words, or the bits of a set
-        wrong = Signal()  # a number that there is not
+        nothing, wrong = Signal(), Signal()  # of a number, the high word; a number that there is not
         gone, has_key = Signal(), Signal()
         reason = Signal(2)  # why DATA is not taken
         unmatched, old, early, busy = range(4)
@@ -145,7 +146,7 @@ class Submessages(wiring.Component):
         aside, asked = numbers.write_port(), numbers.read_port()
         place = Signal(3)
         second, high = Signal(), Signal()
-        kept = Signal(32)
+        kept, step = Signal(32), Signal(3)
         m.d.comb += [
             aside.en.eq(1),
             aside.addr.eq(place),
@@ -188,9 +189,6 @@ class Submessages(wiring.Component):
                 m.next = state
             with m.If(ended):
                 m.next = "INVALID"
-
-        def read(word: int) -> list[object]:
-            return [reading.eq(1), what.eq(word)]
 
         def put(word: int) -> list[object]:
             return [putting.eq(1), what.eq(word)]
@@ -272,9 +270,9 @@ class Submessages(wiring.Component):
                 with m.If(came):
                     m.d.sync += place.eq(place + 1)
                     with m.If(~place[0]):
-                        m.d.sync += [known.eq(empty), wrong.eq(wrong | number[31])]
+                        m.d.sync += [nothing.eq(empty), wrong.eq(wrong | number[31])]
                     with m.Else():
-                        m.d.sync += wrong.eq(wrong | (empty & known & ~place[1] & ~is_acknack))
+                        m.d.sync += wrong.eq(wrong | (nothing & empty & ~place[1] & ~is_acknack))
                         with m.If(is_data):
                             m.next = "EXTRA"
                         with m.Elif(place[1] | is_acknack):
@@ -323,7 +321,7 @@ class Submessages(wiring.Component):
                 with m.If(came & ~is_heartbeat):
                     with m.If(is_gap):
                         m.next = "RUN"
-                    with m.If(~below(number, MAX_BITS + 1)):
+                    with m.If(~below(number, MAX_BITS) & (number != MAX_BITS)):
                         m.next = "INVALID"
             with m.State("RUN"):  # ones that the first word begins with; what is behind is asked for again
                 bit = word.bit_select(Cat(~some[:3], some[3:5] ^ little.replicate(2)), 1)
@@ -338,7 +336,7 @@ class Submessages(wiring.Component):
                     m.next = "COMPARE"
                     with m.If(is_data):
                         m.d.sync += some.eq(1)
-                        m.next = "NEXT"
+                        m.next = "PUT NEXT"
                     with m.If(is_acknack):
                         m.d.sync += some.eq(skip - 1)
                         m.next = "PUT LAST"
@@ -346,36 +344,33 @@ class Submessages(wiring.Component):
                         m.next = "DROP"
                     with m.If(wrong | i.payload.bad):
                         m.next = "INVALID"
-            with m.State("COMPARE"):
-                m.d.comb += read(tables.NEXT_LO)
-                m.next = "COMPARE HIGH"
-            with m.State("COMPARE HIGH"):
-                m.d.comb += [*read(tables.NEXT_HI), high.eq(1)]
-                m.next = "COMPARE LAST"
-            with m.State("COMPARE LAST"):
-                m.d.comb += read(tables.LAST)
-                m.d.sync += known.eq(self.peers.data != 0)
-                m.next = "COMPARED LOW"
-            with m.State("COMPARED LOW"):
-                m.d.comb += begun.eq(1)
-                m.d.sync += known.eq(known | (self.peers.data != 0))
-                m.next = "COMPARED"
-            with m.State("COMPARED"):
-                m.next = "JUDGE"
-                with m.If(is_gap):
-                    m.next = "JUDGE GAP"
-                with m.If(is_heartbeat):
-                    m.next = "JUDGE HEARTBEAT"
+            with m.State("COMPARE"):  # what is read in a step is there in the next but one
+                m.d.comb += [
+                    reading.eq(1),
+                    what.eq(Cat(step[:2], 1)),
+                    high.eq(step == 1),
+                    begun.eq(step == 3),
+                ]
+                m.d.sync += step.eq(step + 1)
+                with m.If(step[1]):
+                    m.d.sync += known.eq((known & step[0]) | (self.peers.data != 0))
+                with m.If(step == 4):
+                    m.d.sync += step.eq(0)
+                    m.next = "JUDGE"
+                    with m.If(is_gap):
+                        m.next = "JUDGE GAP"
+                    with m.If(is_heartbeat):
+                        m.next = "JUDGE HEARTBEAT"
             told = Signal()  # a heartbeat told of a number behind this one
             with m.State("JUDGE"):
-                room = self.room.bit_select(local[: max(1, (self._readers - 1).bit_length())], 1)
+                room = self.room.bit_select(ours, 1)
                 m.d.sync += told.eq(difference[31])
                 m.next = "DROP"
                 with m.If(wrong):
                     m.next = "INVALID"
                 with m.Elif(spdp):
                     m.next = "DISCOVERY"
-                with m.Elif(~found | (~builtin & ~for_any & (reader_number != local + 1))):
+                with m.Elif(~found | (~builtin & ~for_any & (reader_number != ours + 1))):
                     m.d.sync += reason.eq(unmatched)
                 with m.Elif(behind & known):
                     m.d.sync += reason.eq(old)
@@ -396,7 +391,7 @@ class Submessages(wiring.Component):
                 with m.If(~second & known & (same | behind)):
                     m.next = "COMPARE"
                 with m.If(second & ~behind):
-                    m.next = "NEXT"
+                    m.next = "PUT NEXT"
             with m.State("JUDGE HEARTBEAT"):  # by its first, then by its last
                 m.next = "COMPARE"
                 with m.If(second):
@@ -405,34 +400,29 @@ class Submessages(wiring.Component):
                     m.next = "TAKEN"
                 with m.Elif(~known):
                     m.d.sync += [second.eq(1), some.eq(1)]
-                    m.next = "NEXT"
+                    m.next = "PUT NEXT"
                 with m.Elif(behind):
                     m.d.sync += second.eq(1)
                 with m.Else():
-                    m.next = "NEXT"
+                    m.next = "PUT NEXT"
             # What is kept of a peer's reader lies where that of a writer does: ACKED, ASK_FROM and ASK_TO.
             with m.State("PUT LAST"):
                 m.d.comb += put(tables.LAST)
-                m.d.sync += some.eq(0)
-                m.next = "PUT LOW"
-            with m.State("NEXT"):
-                m.next = "NEXT HIGH"
-            with m.State("NEXT HIGH"):
-                m.d.comb += high.eq(1)
-                m.next = "PUT LOW"
-            with m.State("PUT LOW"):
-                m.d.comb += put(tables.NEXT_LO)
-                m.d.sync += some.eq(carried)
-                m.next = "PUT HIGH"
-            with m.State("PUT HIGH"):
-                m.d.comb += put(tables.NEXT_HI)
-                m.d.comb += self.due.en.eq(is_acknack & ((skip != 0) | ~(meta.flags & FLAG_F).any()))
-                m.d.sync += second.eq(1)
-                m.next = "TAKEN"
-                with m.If(is_heartbeat):
-                    m.next = "COMPARE"
-                with m.If(is_data & reliable & told):
-                    m.d.sync += [more.eq(1), more_proxy.eq(proxy)]
+                m.d.sync += [some.eq(0), step.eq(2)]
+                m.next = "PUT NEXT"
+            with m.State("PUT NEXT"):
+                m.d.comb += [high.eq(step == 1), putting.eq(step[1]), what.eq(Cat(step[0], 0, 1))]
+                m.d.sync += step.eq(step + 1)
+                with m.If(step == 2):
+                    m.d.sync += some.eq(carried)
+                with m.If(step == 3):
+                    m.d.comb += self.due.en.eq(is_acknack & ((skip != 0) | ~(meta.flags & FLAG_F).any()))
+                    m.d.sync += [step.eq(0), second.eq(1)]
+                    m.next = "TAKEN"
+                    with m.If(is_heartbeat):
+                        m.next = "COMPARE"
+                    with m.If(is_data & reliable & told):
+                        m.d.sync += [more.eq(1), more_proxy.eq(proxy)]
             with m.State("TAKEN"):
                 m.d.comb += i.ready.eq(1)
                 m.next = "IDLE"
