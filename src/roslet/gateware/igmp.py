@@ -33,6 +33,9 @@ ROUTER_ALERT = bytes((0x94, 0x04, 0x00, 0x00))
 _TAPS = 0xB400
 """x^16 + x^14 + x^13 + x^11 + 1, which is primitive: all states but 0 follow one another."""
 
+_CYCLE_TAPS = 0xE10000
+"""x^24 + x^23 + x^22 + x^17 + 1, likewise: it counts cycles without a carry."""
+
 HEADER = ipv4.SIZE + len(ROUTER_ALERT)
 _IPV4 = {
     "version_ihl": 4 << 4 | HEADER // 4,
@@ -57,6 +60,11 @@ def _fields(table: tuple[Field, ...], values: Mapping[str, int | Value]) -> list
         for field in table
         for value in (values[field.name],)
     ]
+
+
+def _next(state: Value, taps: int) -> Value:
+    """What follows a state of a shift register with feedback."""
+    return (state >> 1) ^ Mux(state[0], taps, 0)
 
 
 class Igmp(wiring.Component):
@@ -86,7 +94,11 @@ class Igmp(wiring.Component):
             raise ValueError(f"a clock has at least {TICKS} Hz here, not {clock_hz}")
         if count < 1:
             raise ValueError(f"IGMP is for at least one group, not {count}")
-        self._cycles = clock_hz // TICKS
+        if clock_hz // TICKS >= 1 << 24:
+            raise ValueError(f"a clock has less than {TICKS << 24} Hz here, not {clock_hz}")
+        self._last = 1  # what `cycle` is in the last cycle of a tick
+        for _ in range(clock_hz // TICKS - 1):
+            self._last = self._last >> 1 ^ (_CYCLE_TAPS if self._last & 1 else 0)
         self._count = count
         super().__init__(
             {
@@ -113,11 +125,10 @@ class Igmp(wiring.Component):
         m.d.sync += [joined.eq(valid), due.eq((due & ~sent | more | joining) & valid)]
 
         # When: `left` ticks from now while `running`. `choosing` takes a random number of those that are allowed.
-        cycle = Signal(range(self._cycles))
-        tick = cycle == self._cycles - 1
-        m.d.sync += cycle.eq(Mux(tick, 0, cycle + 1))
-        noise = Signal(16, init=1)
-        m.d.sync += noise.eq((noise >> 1) ^ Mux(noise[0], _TAPS, 0))
+        cycle, noise = Signal(24, init=1), Signal(16, init=1)
+        tick = cycle == self._last
+        m.d.sync += cycle.eq(Mux(tick, 1, _next(cycle, _CYCLE_TAPS)))
+        m.d.sync += noise.eq(_next(noise, _TAPS))
         running, choosing = Signal(), Signal()
         limit = Signal(8)
         delay = Signal(12)
