@@ -204,9 +204,8 @@ class Participant(wiring.Component):
             self.alive.eq(discovery.alive),
             self.matched.eq(discovery.matched),
         ]
-        # In the cycle after, as what follows from them takes long
-        for given, due in ((discovery.due, turns.due0), (submessages.due, turns.due1)):
-            m.d.sync += [due.en.eq(given.en), due.proxy.eq(given.proxy)]
+        connect(m, discovery.due, turns.due0)
+        connect(m, submessages.due, turns.due1)
         self._memories(m, composer)
         return m
 
