@@ -250,6 +250,9 @@ class Participant(wiring.Component):
             ]
             with m.If(wrote & (looked_at == written)):
                 m.d.sync += word.eq(new)
+        for hidden, name in ((composer.hide_peers, "peers"), (composer.hide_own, "own")):
+            with m.If(hidden):
+                m.d.sync += given["sending", name][1].eq(0)
 
 
 def _either(values: Any) -> Any:
