@@ -435,8 +435,8 @@ class ComposerSpec(Spec):
     bugs = (
         Bug("count", "pushes.eq(in_message)", "pushes.eq(1)"),
         Bug("none_before", "[there.eq(0), coming.eq(0)]", "there.eq(0)"),
-        Bug("declared", "Cat(C(0, 2), subject.words)", "Cat(C(0, 1), subject.words)"),
-        Bug("over", "(word != subject.words)", "(word != subject.words + 1)"),
+        Bug("declared", "added.eq(Cat(C(0, 2), words))", "added.eq(Cat(C(0, 1), words))"),
+        Bug("over", "(word != words)", "(word != words + 1)"),
     )
 
     def block(self) -> Any:
@@ -455,10 +455,14 @@ class ComposerSpec(Spec):
         with m.Elif(running):
             m.d.sync += [count.eq(pushed), cycles.eq(cycles + 1), running.eq(~dut.done)]
         needs = Mux(second, 1, 4 + words)
+        hidden = Signal(2)
+        m.d.sync += hidden.eq(Cat(dut.hide_own, dut.hide_peers))
         m.d.comb += [
             Assume((dut.at == 0) | second, "a template"),
             Assume(words <= 3, "a message that fits"),
             Assume(~dut.start | ~running, "one after another"),
+            Assume(~hidden[0] | (dut.own.data == 0), "hidden"),
+            Assume(~hidden[1] | (dut.peers.data == 0), "hidden"),
             Assert(~(running & dut.done) | (pushed == needs), "count"),
             Assert(running | (~dut.push & ~dut.done), "none_before"),
             Assert(

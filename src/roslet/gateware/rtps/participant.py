@@ -207,9 +207,8 @@ class Participant(wiring.Component):
             self.alive.eq(discovery.alive),
             self.matched.eq(discovery.matched),
         ]
-        # In the cycle after, as what follows from them takes long
-        for given, due in ((discovery.due, turns.due0), (submessages.due, turns.due1)):
-            m.d.sync += [due.en.eq(given.en), due.proxy.eq(given.proxy)]
+        connect(m, discovery.due, turns.due0)
+        connect(m, submessages.due, turns.due1)
         self._memories(m, composer)
         return m
 
@@ -231,17 +230,17 @@ class Participant(wiring.Component):
                 m.d.comb += [user.data.eq(word) for user in users]
                 given[side, name] = read.addr, word
         write, ours = peers.write_port(), own.write_port()
-        # In the cycle after, as what is written takes long; but for what comes from outside, while this is held in reset
-        later = WriteSignature(len(ours.addr)).create()
-        for domain, port, writers in (
-            (m.d.sync, write, (walker.source, submessages.write, discovery.write)),
-            (m.d.sync, later, (sender.write,)),
-            (m.d.comb, ours, (later, self.own)),
+        # In the cycle after, as what is written takes long; what comes from outside does while this is held in reset
+        for port, writers in (
+            (write, (walker.source, submessages.write, discovery.write)),
+            (ours, (sender.write, self.own)),
         ):
-            domain += [
-                port.en.eq(Cat(writer.en for writer in writers).any()),
-                port.addr.eq(_either(writer.addr for writer in writers)),
-                port.data.eq(_either(writer.data for writer in writers)),
+            en, addr, data = (Signal.like(one, reset_less=True) for one in (port.en, port.addr, port.data))
+            m.d.comb += [port.en.eq(en), port.addr.eq(addr), port.data.eq(data)]
+            m.d.sync += [
+                en.eq(Cat(writer.en for writer in writers).any()),
+                addr.eq(_either(writer.addr for writer in writers)),
+                data.eq(_either(writer.data for writer in writers)),
             ]
         # Block RAM gives anything of a word that is being written. Each side may read one of the other's: it gets the new.
         for port, (address, word) in ((write, given["sending", "peers"]), (ours, given["receiving", "own"])):
@@ -254,6 +253,9 @@ class Participant(wiring.Component):
             ]
             with m.If(wrote & (looked_at == written)):
                 m.d.sync += word.eq(new)
+        for hidden, name in ((composer.hide_peers, "peers"), (composer.hide_own, "own")):
+            with m.If(hidden):
+                m.d.sync += given["sending", name][1].eq(0)
 
 
 def _either(values: Any) -> Any:

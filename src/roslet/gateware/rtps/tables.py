@@ -56,7 +56,7 @@ def _bits(count: int) -> int:
     return max(1, (count - 1).bit_length())
 
 
-def _aligned(sizes: Sequence[int]) -> tuple[list[int], int]:
+def aligned(sizes: Sequence[int]) -> tuple[list[int], int]:
     """Where parts of these sizes, powers of two, begin, each aligned to its size; and where they end."""
     order = sorted(range(len(sizes)), key=lambda n: -sizes[n])
     starts, at = [0] * len(sizes), 0
@@ -81,7 +81,7 @@ class PeerMap:
             PROXY << self.endpoint_bits,
             SCRATCH,
         )
-        (self._participants, self._builtins, self._endpoints, self._scratch), self.depth = _aligned(sizes)
+        (self._participants, self._builtins, self._endpoints, self._scratch), self.depth = aligned(sizes)
         self.address_bits = _bits(self.depth)
         self.index_bits = max(2 + self.slot_bits, self.endpoint_bits)
         self.proxy_bits = self.index_bits + 1
@@ -171,7 +171,7 @@ class OwnMap:
             1 << (self.text_bits + self.local_bits + 2),
             *(self.stride(local) * local.depth for local in self.writers),
         )
-        starts, self.depth = _aligned(sizes)
+        starts, self.depth = aligned(sizes)
         self._own, self._writers, self._texts = starts[:3]
         self.samples = starts[3:]
         """Where the samples of each writer begin."""
