@@ -6,24 +6,33 @@ from __future__ import annotations
 
 import os
 import pathlib
+import socket
 import sys
-from typing import Literal
+import time
+import urllib.parse
+import xmlrpc.client
+from typing import Any, Literal
 
 import pytest
 
 import peers
 from interop import boards
 from interop.namespace import Namespace
-from interop.ros1 import Master, Program
+from interop.ros1 import Master, Program, wait_until
 from roslet.bundle.build import Bundle, build
 
 LONG = bool(os.environ.get("ROSLET_LONG"))
 MESSAGES = 100_000 if LONG else 12_000
-# Seconds that they may take.
-LIMIT = 900.0 if LONG else 110.0
+# Seconds that they may take: with both cores busy 100,000 took 240. Less than a namespace lasts.
+LIMIT = 540.0 if LONG else 110.0
+# And of a whole test, whose ordinary limit is too short for that.
+PATIENCE = pytest.mark.timeout(LIMIT + 30)
 DEFINITIONS = peers.ROOT / "examples/msgs/mros_comm_measure"
 # Bytes of .mpy, and of heap.
 FLASH = {"ros1": 60_000, "ros2": 110_000}
+# Octets by which what the heap holds differs from one look to the next by nothing but chance: the collector keeps what any
+# word on the stack points at, be it left over. Of one look up to 256 were seen, of the least of five 32.
+STRAY = 128
 # Octets of heap that a message echoed takes until they are collected: a quarter more than was measured.
 GARBAGE = {"ros1": 455, "ros2": 1090}
 
@@ -66,7 +75,10 @@ def drift(lines: list[str]) -> int:
     held = [int(line.split()[2]) for line in lines if line.startswith("memory")][1:]
     half = len(held) // 2
     assert half >= 5, lines
-    return min(held[half:]) - min(held[:half])
+    grown = min(held[half:]) - min(held[:half])
+    if grown > STRAY:
+        print("held at each rest:", *held)
+    return grown
 
 
 @pytest.mark.parametrize(("dialect", "most"), FLASH.items())
@@ -79,6 +91,7 @@ def test_an_echo_fits_its_flash(dialect: Literal["ros1", "ros2"], most: int, tmp
     assert made.image is not None and made.image.stat().st_size < most
 
 
+@PATIENCE
 def test_a_ros1_echo_in_160_kb_takes_no_more_with_time(tmp_path: pathlib.Path) -> None:
     made = echo("ros1", tmp_path, rosout=True)
     master = Master("roslet", tmp_path)
@@ -89,12 +102,13 @@ def test_a_ros1_echo_in_160_kb_takes_no_more_with_time(tmp_path: pathlib.Path) -
         talker = Program(pinger("ros1://", MESSAGES, "pinger"), environment)
         talker.finish(LIMIT)
         assert talker.lines[-1].startswith(f"right {MESSAGES} of {MESSAGES} "), talker.lines
-        assert drift(board.lines) <= 0
+        assert drift(board.lines) <= STRAY
     finally:
         board.stop()
         master.stop()
 
 
+@PATIENCE
 @pytest.mark.parametrize(("heap", "rosout"), [("256k", False), ("272k", True)])
 def test_a_ros2_echo_with_four_peers_takes_no_more_with_time(
     tmp_path: pathlib.Path, heap: str, rosout: bool
@@ -112,7 +126,38 @@ def test_a_ros2_echo_with_four_peers_takes_no_more_with_time(
         talker = namespace.start(*pinger("ros2://", MESSAGES, "pinger"), name="pinger", **path)
         lines = talker.finish(LIMIT)
         assert lines[-1].startswith(f"right {MESSAGES} of {MESSAGES} "), lines
-        assert drift(board.lines()) <= 0
+        assert drift(board.lines()) <= STRAY
+
+
+def at_rest(board: Program) -> int:
+    """What the heap of board_idle.py holds, from now on for a second: the least."""
+    begin = len(board.lines)
+    wait_until(lambda: len(board.lines) >= begin + 10, "the board says what it holds")
+    return min([int(line.split()[1]) for line in board.lines[begin:]])
+
+
+def test_what_connected_and_is_gone_takes_no_heap(tmp_path: pathlib.Path) -> None:
+    """Each connection has another port, and 64 such addresses were kept: 160 octets each, or 192 with a larger table."""
+    made = echo("ros1", tmp_path, rosout=True, program="board_idle.py")
+    master = Master("roslet", tmp_path)
+    board = Program(boards.command(made, "160k"), on_ros1(master))
+    try:
+        board.wait_for("ready")
+        found: Any = xmlrpc.client.ServerProxy(master.uri).lookupNode("/test", "/idle")
+        where = urllib.parse.urlsplit(found[2])
+
+        def connect(count: int) -> None:
+            for _ in range(count):
+                socket.create_connection((where.hostname or "", where.port or 0)).close()
+                time.sleep(0.01)
+
+        connect(5)
+        before = at_rest(board)
+        connect(40)
+        assert at_rest(board) - before < 160
+    finally:
+        board.stop()
+        master.stop()
 
 
 def garbage(lines: list[str]) -> int:

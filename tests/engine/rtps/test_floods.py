@@ -51,6 +51,14 @@ def test_samples_that_come_too_early_are_held_to_the_bound() -> None:
     assert proxy.held_bytes == 0
 
 
+def test_no_more_is_asked_for_at_once_than_can_be_held() -> None:
+    victim, _ = met(limits=Limits(held_samples=10))
+    victim.now = 1.0
+    victim.participant.receive_datagram(hand.message(hand.heartbeat(WRITER, 1, 1000, 2)), SOURCE, victim.now)
+    asked = b"".join([datagram for datagram, _ in victim.turn()])
+    assert hand.number_set(1, 10, (0xFFC00000,)) in asked
+
+
 def test_samples_of_no_octets_that_come_too_early_are_held_and_forgotten() -> None:
     victim, reader = met()
     for sequence in (3, 4, 5):

@@ -491,7 +491,9 @@ class Reader:
     def _answer(self, proxy: WriterProxy, now: float) -> None:
         missing = []
         if proxy.next <= proxy.last:
-            for sequence in range(proxy.next, min(proxy.last + 1, proxy.next + number_set.MAX_BITS)):
+            # No more than can be kept: where heap is short, to note them all may take too much of it.
+            most = min(number_set.MAX_BITS, self._limits.held_samples)
+            for sequence in range(proxy.next, min(proxy.last + 1, proxy.next + most)):
                 if sequence not in proxy.held and sequence not in proxy.assemblies:
                     missing.append(sequence)
         partial = []

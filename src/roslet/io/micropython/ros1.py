@@ -61,7 +61,7 @@ class Ros1Shell:
             return None
         sock.setblocking(False)
         sockets.tune(sock)
-        return sock, sockets.source(raw)[0]
+        return sock, sockets.host(raw)
 
     def _evict(self) -> bool:
         for stream in self.streams:

@@ -20,15 +20,15 @@ _IP_MULTICAST_IF, _IP_MULTICAST_TTL, _IP_MULTICAST_LOOP, _IP_MULTICAST_ALL = 32,
 # Where ports are chosen from, and how often another is tried.
 FIRST_PORT, LAST_PORT = 20000, 32767
 TRIES = 100
-# Addresses that are remembered in the port's form.
+# Addresses that are remembered in the port's form, and hosts.
 MAX_KNOWN = 64
-# Bytes that nearly every datagram has less of.
-USUAL = 1536
+# Bytes that are read of a datagram at first: most have less.
+FIRST = 512
 LOOPBACK = "127.0.0.1"
 
 _peek: int = getattr(_socket, "MSG_PEEK", 0)
 _known: "dict[tuple[str, int], Any]" = {}
-_sources: "dict[bytes, tuple[str, int]]" = {}
+_hosts: "dict[bytes, str]" = {}
 
 
 def address(host: str, port: int) -> "Any":
@@ -46,17 +46,18 @@ def address_of(pair: "tuple[str, int]") -> "Any":
     return found
 
 
-def source(raw: "Any") -> "tuple[str, int]":
-    """Host and port of an address that `recvfrom` or `accept` gave."""
+def host(raw: "Any") -> str:
+    """The host of an address that `recvfrom` or `accept` gave. Hosts are few and remembered; each connection has another
+    port."""
     if isinstance(raw, tuple):
-        return raw
-    raw = bytes(raw)
-    found = _sources.get(raw)
+        return raw[0]  # type: ignore[no-any-return]
+    number = bytes(raw[4:8])
+    found = _hosts.get(number)
     if found is None:
-        if len(_sources) >= MAX_KNOWN:
-            _sources.clear()
-        a, b, c, d = raw[4:8]
-        found = _sources[raw] = ("%d.%d.%d.%d" % (a, b, c, d), raw[2] << 8 | raw[3])
+        if len(_hosts) >= MAX_KNOWN:
+            _hosts.clear()
+        a, b, c, d = number
+        found = _hosts[number] = "%d.%d.%d.%d" % (a, b, c, d)
     return found
 
 
@@ -134,29 +135,28 @@ def datagrams(port: int, shared: bool = False) -> "Any":
 
 
 def receive(sock: "Any", most: int) -> "tuple[bytes, Any]":
-    """A datagram, of which the rest beyond `most` is lost, and where it came from. Raises OSError, MemoryError.
+    """A datagram, of which the rest beyond `most` is lost, and where it came from. Raises OSError; MemoryError, and then
+    the datagram still waits.
 
-    MicroPython allots room for the longest before it looks. Where it can look first, the room is that of most
-    datagrams, and of one for which there is no memory the beginning is taken: it has whole submessages, and the rest
-    will be asked for again.
+    MicroPython allots room for the longest before it looks, in one piece, which a heap that is nearly full may not have.
+    Where it can look first, it begins with little, and of a datagram for which there is no memory the beginning is taken:
+    it has whole submessages, and the rest will be asked for again.
     """
-    room = USUAL
+    room = FIRST if _peek else most
     found: Any = None
-    while _peek and room < most:
-        try:
+    try:
+        while room < most:
             found = sock.recvfrom(room, _peek)
-        except MemoryError:
-            if found is None:
-                raise
-            whole = True  # of what can be had
+            if len(found[0]) < room:
+                break
+            room *= 2
         else:
-            whole = len(found[0]) < room
-        if whole:
-            sock.recv(1)  # the rest of it goes as well
-            return found  # type: ignore[no-any-return]
-        room *= 2
-    found = None
-    return sock.recvfrom(most)  # type: ignore[no-any-return]
+            return sock.recvfrom(most)  # type: ignore[no-any-return]
+    except MemoryError:
+        if found is None:
+            raise
+    sock.recv(1)  # the rest of it goes as well
+    return found  # type: ignore[no-any-return]
 
 
 def join(sock: "Any", group: str, interface: str) -> bool:

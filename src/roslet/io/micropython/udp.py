@@ -49,7 +49,7 @@ class Domain:
         self._out = memoryview(bytearray(fragment + 512))
         self._whole = self._out
         # Samples come in here, where the largest that may come is known.
-        self._room = memoryview(bytearray(sockets.USUAL))
+        self._room = memoryview(bytearray(sockets.FIRST))
         self._bounded = True
         self._reading = False  # whether somebody may be looking at what lies there
         self._with_source = 0.0  # when the next is read with its source
@@ -135,7 +135,7 @@ class Domain:
             # On a host with nothing but loopback others may not use the group, although we can.
             found += self._ports_of(sockets.LOOPBACK)
         for host, port in network.peers:
-            host = sockets.source(sockets.address(host, port or 1))[0]
+            host = sockets.host(sockets.address(host, port or 1))
             found += self._ports_of(host) if port is None else [(host, port)]
         return tuple(found)
 
@@ -163,15 +163,18 @@ class Domain:
         except OSError:
             return
         except MemoryError:
-            self._no_memory()
+            self._no_memory(sock)
             return
-        self.participant.receive_datagram(data, sockets.source(raw), self.loop.now())
+        source = (sockets.host(raw), 0)  # nobody asks for its port
+        self.participant.receive_datagram(data, source, self.loop.now())
         self._tell()
         self.flush()
 
-    def _no_memory(self) -> None:
-        """The heap is full, or in pieces. What the datagram said comes again, or is reported lost."""
+    def _no_memory(self, sock: "Any") -> None:
+        """The heap is full, or in pieces. The datagram goes, or what is behind it would never be read; what it said comes
+        again, or is reported lost."""
         gc.collect()
+        sock.recv(1)
         self._count("no-memory-for-datagram")
 
     def take_in(self, kind: "Any") -> None:
@@ -196,7 +199,7 @@ class Domain:
         except OSError:
             return
         except MemoryError:
-            self._no_memory()
+            self._no_memory(self._user)
             return
         count = len(data)
         room[:count] = data
