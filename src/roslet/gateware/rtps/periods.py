@@ -93,12 +93,14 @@ class Periods(wiring.Component):
 
 
 def every(m: Module, count: int, of: Value) -> Value:
-    """High in the last of each `count` cycles in which `of` is."""
+    """High in the cycle after the last of each `count` cycles in which `of` is."""
+    over = Signal()
     if count == 1:
-        return of
+        m.d.sync += over.eq(of)
+        return over
     bits = (count - 1).bit_length()
     start = (1 << bits) - count
     at, after = Signal(bits, init=start), Signal(bits + 1)  # what overflows needs no comparison
     m.d.comb += after.eq(at + of)
-    m.d.sync += at.eq(Mux(after[-1], start, after))
-    return after[-1]
+    m.d.sync += [at.eq(Mux(after[-1], start, after)), over.eq(after[-1])]
+    return over

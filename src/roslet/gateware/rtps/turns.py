@@ -87,15 +87,13 @@ class Turns(wiring.Component):
         due, there = Signal(), Signal()
         sweep, sweeping = Signal(), Signal()  # from the next round on, in this one
         fresh = Signal(init=1)
-        announcing, announce = Signal(), Signal()
+        announcing, found = Signal(), Signal()
         written, forget, step = Signal(), Signal(), Signal()
+        index = Signal(peers.index_bits)
         alive = self.alive.bit_select(at[2 : 2 + peers.slot_bits], 1)
         m.d.comb += [
-            job.user.eq(user),
-            job.greet.eq(greet & ~announce),
-            job.announce.eq(announce),
-            job.asked.eq(due),
-            job.index.eq(at[: 2 + peers.slot_bits]),
+            index.eq(at[: 2 + peers.slot_bits]),
+            found.eq(((there & (due | sweeping)) | (greet & due)) & ~fresh),
             written.eq(first | second),
             write.addr.eq(Mux(second, second_at, Mux(first, first_at, at))),
             write.data.eq(written),
@@ -104,7 +102,7 @@ class Turns(wiring.Component):
         ]
         for kind, bits_ in ((user, peers.endpoint_bits), (greet, peers.slot_bits)):
             with m.If(kind):
-                m.d.comb += job.index.eq(at[:bits_])
+                m.d.comb += index.eq(at[:bits_])
         with m.FSM():
             with m.State("READ"), m.If(~written):
                 m.next = "TAKE"
@@ -118,12 +116,17 @@ class Turns(wiring.Component):
                     m.next = "READ"
             with m.State("DECIDE"):
                 m.next = "READ"
+                m.d.sync += [
+                    job.user.eq(user),
+                    job.index.eq(index),
+                    job.asked.eq(due),
+                    job.greet.eq(greet & found),
+                    job.announce.eq(~found),
+                ]
                 with m.If(~written):
                     m.d.comb += forget.eq(due | fresh)
-                    with m.If(((there & (due | sweeping)) | (greet & due)) & ~fresh):
-                        m.next = "OFFER"
-                    with m.Elif(announcing):
-                        m.d.sync += [announce.eq(1), announcing.eq(0)]
+                    with m.If(found | announcing):
+                        m.d.sync += announcing.eq(found & announcing)
                         m.next = "OFFER"
                     with m.Else():
                         m.d.comb += step.eq(1)
@@ -131,7 +134,6 @@ class Turns(wiring.Component):
                 m.d.comb += self.valid.eq(1)
                 with m.If(self.taken):
                     m.d.comb += step.eq(1)
-                    m.d.sync += announce.eq(0)
                     m.next = "READ"
         with m.If(step):
             m.d.sync += at.eq(at + 1)

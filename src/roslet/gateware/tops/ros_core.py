@@ -217,6 +217,8 @@ class RosCore(LinkedNode):
             came = rx.valid & rx.ready & rx.payload.end & ~rx.payload.bad
             with m.If(came | second):
                 m.d.sync += loader.enable.eq(1)
+        with m.If(running):
+            m.d.sync += session.eq(0)
         quick = Signal(range(QUICK + 1), init=QUICK)
         with m.If(running & step & (quick != 0)):
             m.d.sync += quick.eq(quick - 1)
