@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from amaranth.hdl import Cat, Module, Signal, Value
+from amaranth.hdl import Module, Mux, Signal, Value
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
@@ -231,17 +231,28 @@ class Participant(wiring.Component):
                 given[side, name] = read.addr, word
         write, ours = peers.write_port(), own.write_port()
         # In the cycle after, as what is written takes long; what comes from outside does while this is held in reset
-        for port, writers in (
-            (write, (walker.source, submessages.write, discovery.write)),
-            (ours, (sender.write, self.own)),
+        receiving = [
+            block.write if block is not walker else block.source for block in (walker, submessages, discovery)
+        ]
+        outside = self.own.en
+        for port, given_ in (
+            (
+                write,
+                {name: _either(getattr(one, name) for one in receiving) for name in ("en", "addr", "data")},
+            ),
+            (
+                ours,
+                {
+                    "en": sender.write.en | outside,
+                    "addr": Mux(outside, self.own.addr, sender.write.addr),
+                    "data": Mux(outside, self.own.data, sender.write.data),
+                },
+            ),
         ):
-            en, addr, data = (Signal.like(one, reset_less=True) for one in (port.en, port.addr, port.data))
-            m.d.comb += [port.en.eq(en), port.addr.eq(addr), port.data.eq(data)]
-            m.d.sync += [
-                en.eq(Cat(writer.en for writer in writers).any()),
-                addr.eq(_either(writer.addr for writer in writers)),
-                data.eq(_either(writer.data for writer in writers)),
-            ]
+            for name, value in given_.items():
+                later = Signal.like(getattr(port, name), reset_less=True)
+                m.d.comb += getattr(port, name).eq(later)
+                m.d.sync += later.eq(value)
         # Block RAM gives anything of a word that is being written. Each side may read one of the other's: it gets the new.
         for port, (address, word) in ((write, given["sending", "peers"]), (ours, given["receiving", "own"])):
             looked_at, written, wrote, new = Signal.like(address), Signal.like(address), Signal(), Signal(32)

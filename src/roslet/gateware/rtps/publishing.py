@@ -8,7 +8,7 @@ from typing import Any
 from amaranth.hdl import Array, C, Module, Signal, Value
 
 from roslet.gateware.rtps import tables
-from roslet.gateware.rtps.parameters import GROUP, USER_GROUP_PORT
+from roslet.gateware.rtps.parameters import USER_GROUP_PORT
 from roslet.gateware.rtps.sending import Sending
 
 
@@ -126,11 +126,12 @@ def publish(
         with m.If(~theirs[tables.INFO_WRITER] & (its_writer == local)):
             m.next = "READER IP"
     with m.State("READER IP"):
-        m.d.sync += ports.ip.eq(theirs)
+        m.d.comb += work.take_ip.eq(1)
         work.ask(m, tables.START)
         m.next = "READER'S PORT"
     with m.State("READER'S PORT"):
-        m.d.sync += [ports.port.eq(theirs), in_group.eq(theirs[tables.PORT_GROUP])]
+        m.d.comb += work.take_port.eq(1)
+        m.d.sync += in_group.eq(theirs[tables.PORT_GROUP])
         m.next = "READER START"
     with m.State("READER START"):
         m.d.sync += start.eq(work.age_of(theirs))
@@ -147,12 +148,8 @@ def publish(
             with m.If(grouped):
                 m.next = "NEXT READER"
             with m.Elif(several.bit_select(its, 1)):
-                m.d.sync += [
-                    work.to_group.eq(1),
-                    grouped.eq(1),
-                    ports.ip.eq(GROUP),
-                    ports.port.eq(group_port + USER_GROUP_PORT),
-                ]
+                m.d.comb += [work.to_all.eq(1), work.group_port.eq(group_port + USER_GROUP_PORT)]
+                m.d.sync += [work.to_group.eq(1), grouped.eq(1)]
                 with m.If(reliable):
                     m.next = "HEARTBEAT"
                 with m.Else():

@@ -21,11 +21,11 @@ def repeat(m: Module, work: Sending, asked: Value, writers: Value, readers: Valu
     unacknowledged, lost = Signal(), Signal()
     over = Signal()  # nothing more is asked for
     with m.State("READER"):
-        m.d.sync += ports.ip.eq(theirs)
+        m.d.comb += work.take_ip.eq(1)
         work.ask_own(m, tables.WRITER_LAST)
         m.next = "READER PORT"
     with m.State("READER PORT"):
-        m.d.sync += ports.port.eq(theirs)
+        m.d.comb += work.take_port.eq(1)
         work.ask_own(m, tables.WRITER_LAST_HI)
         work.ask(m, tables.START)
         m.next = "LAST"

@@ -8,7 +8,6 @@ from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.composer import subject_layout
-from roslet.gateware.rtps.parameters import GROUP
 from roslet.gateware.rtps.ports import ReadSignature, WriteSignature
 from roslet.gateware.rtps.publishing import publish
 from roslet.gateware.rtps.repeating import repeat
@@ -25,7 +24,7 @@ class Sender(wiring.Component):
 
     Ports: `publish0` .. for each writer of the user, the first `users` of the tables' writers: its messages. `job`, `valid`,
     `taken`, of `Turns`; `matched`, the user proxies that there are; `group_port`, where all are to be announced to,
-    and messages for the group at the next; `peers` and `own`, read ports, and `write`; `template`, `start`, `done`, `which`,
+    and messages for the group at the next; `peers` and `own`, read ports, and `write`, whose data mean nothing while `en` is low; `template`, `start`, `done`, `which`,
     `register`, `subject`, of the composer;
     `room`, `busy`, `finish`, `ip`, `port`, of the outbox; `writers`, `readers`, a bit for each of ours that is enabled;
     `again`, high for a cycle when every proxy must be served once.
@@ -152,7 +151,7 @@ class Sender(wiring.Component):
     def _announcements(self, m: Module, work: Sending) -> None:
         template = self._rom.start["participant"]
         with m.State("ANNOUNCE"):
-            m.d.sync += [self.ip.eq(GROUP), self.port.eq(self.group_port)]
+            m.d.comb += [work.to_all.eq(1), work.group_port.eq(self.group_port)]
             work.compose(m, template, "IDLE", COMPOSE)
         with m.State("GREET"):
             work.ask(m, tables.META_IP, of_participant=1)
@@ -161,10 +160,10 @@ class Sender(wiring.Component):
             work.ask(m, tables.META_PORT, of_participant=1)
             m.next = "GREET IP"
         with m.State("GREET IP"):
-            m.d.sync += self.ip.eq(self.peers.data)
+            m.d.comb += work.take_ip.eq(1)
             m.next = "GREET PORT"
         with m.State("GREET PORT"):
-            m.d.sync += self.port.eq(self.peers.data)
+            m.d.comb += work.take_port.eq(1)
             work.compose(m, template, "IDLE", COMPOSE)
 
     def _who(self, m: Module, work: Sending) -> None:
@@ -199,11 +198,11 @@ class Sender(wiring.Component):
     def _acknowledge(self, m: Module, work: Sending) -> None:
         """A peer's writer: what it says its last is, and what we want."""
         with m.State("WRITER"):
-            m.d.sync += self.ip.eq(self.peers.data)
+            m.d.comb += work.take_ip.eq(1)
             work.ask(m, tables.LAST)
             m.next = "WRITER PORT"
         with m.State("WRITER PORT"):
-            m.d.sync += self.port.eq(self.peers.data)
+            m.d.comb += work.take_port.eq(1)
             work.ask(m, tables.NEXT_LO)
             m.next = "WANTED"
         with m.State("WANTED"):

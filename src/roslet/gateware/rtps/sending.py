@@ -8,6 +8,7 @@ from typing import Any
 from amaranth.hdl import Cat, Module, Mux, Signal, Value, signed
 
 from roslet.gateware.octets import pick
+from roslet.gateware.rtps.parameters import GROUP
 from roslet.gateware.rtps.rom import Register, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 
@@ -49,7 +50,15 @@ class Sending:
 
         # What our own memory gives, and more
         self.increment, self.sum = Signal(8, init=1), Signal(33)
-        m.d.comb += self.sum.eq(sender.own.data + self.increment)
+        m.d.comb += [self.sum.eq(sender.own.data + self.increment), sender.write.data.eq(self.sum)]
+        # Where it goes: to whom what peers gave belongs, or to the group of all
+        self.take_ip, self.take_port, self.to_all, self.group_port = Signal(), Signal(), Signal(), Signal(16)
+        with m.If(self.take_ip):
+            m.d.sync += sender.ip.eq(sender.peers.data)
+        with m.If(self.take_port):
+            m.d.sync += sender.port.eq(sender.peers.data)
+        with m.If(self.to_all):
+            m.d.sync += [sender.ip.eq(GROUP), sender.port.eq(self.group_port)]
         self._numbers(m)
         m.d.comb += self.subject.missing.eq(
             Cat(self.age >= n for n in reversed(range(window))) << 32 - window
@@ -98,11 +107,7 @@ class Sending:
 
     def store(self, m: Module, word: int) -> None:
         """`sum`, as a word of our writer."""
-        m.d.comb += [
-            self.ports.write.en.eq(1),
-            self.ports.write.addr.eq(self._writer_word(word)),
-            self.ports.write.data.eq(self.sum),
-        ]
+        m.d.comb += [self.ports.write.en.eq(1), self.ports.write.addr.eq(self._writer_word(word))]
 
     def _writer_word(self, word: int) -> Value:
         subject = self.subject
