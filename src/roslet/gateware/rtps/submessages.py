@@ -141,7 +141,8 @@ class Submessages(wiring.Component):
             m.d.sync += more.eq(0)
 
         # Its numbers are put aside as they come, the high word first: one, or two. What was asked of `numbers` is in `kept`
-        # two cycles later, as with `peers`: of the first or the `second`, the low word, or the `high` one.
+        # two cycles later, as with `peers`: of the first or the `second`, the low word, or the `high` one. Whatever comes is
+        # written at `place`, which is behind the numbers when they are asked for.
         m.submodules.numbers = numbers = Memory(shape=32, depth=8, init=[], attrs={"ram_style": "block"})
         aside, asked = numbers.write_port(), numbers.read_port()
         place = Signal(3)
