@@ -239,8 +239,10 @@ class Participant(wiring.Component):
                 addr.eq(_either(writer.addr for writer in writers)),
                 data.eq(_either(writer.data for writer in writers)),
             ]
-        # Block RAM gives anything of a word that is being written. Each side may read one of the other's: it gets the new.
-        for port, (address, word) in ((write, given["sending", "peers"]), (ours, given["receiving", "own"])):
+        # Block RAM gives anything of a word that is being written. Each side may read one of the other's: of peers it gets
+        # the new. Of ours, where who receives looks at the same word for some cycles, it keeps what it had.
+        for port, side, name in ((write, "sending", "peers"), (ours, "receiving", "own")):
+            address, word = given[side, name]
             looked_at, written, wrote, new = Signal.like(address), Signal.like(address), Signal(), Signal(32)
             m.d.sync += [
                 looked_at.eq(address),
@@ -249,7 +251,7 @@ class Participant(wiring.Component):
                 new.eq(port.data),
             ]
             with m.If(wrote & (looked_at == written)):
-                m.d.sync += word.eq(new)
+                m.d.sync += word.eq(new if port is write else word)
         for hidden, name in ((composer.hide_peers, "peers"), (composer.hide_own, "own")):
             with m.If(hidden):
                 m.d.sync += given["sending", name][1].eq(0)
