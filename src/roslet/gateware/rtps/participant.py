@@ -231,9 +231,7 @@ class Participant(wiring.Component):
                 given[side, name] = read.addr, word
         write, ours = peers.write_port(), own.write_port()
         # In the cycle after, as what is written takes long; what comes from outside does while this is held in reset
-        receiving = [
-            block.write if block is not walker else block.source for block in (walker, submessages, discovery)
-        ]
+        receiving = walker.source, submessages.write, discovery.write
         outside = self.own.en
         for port, given_ in (
             (
@@ -253,8 +251,10 @@ class Participant(wiring.Component):
                 later = Signal.like(getattr(port, name), reset_less=True)
                 m.d.comb += getattr(port, name).eq(later)
                 m.d.sync += later.eq(value)
-        # Block RAM gives anything of a word that is being written. Each side may read one of the other's: it gets the new.
-        for port, (address, word) in ((write, given["sending", "peers"]), (ours, given["receiving", "own"])):
+        # Block RAM gives anything of a word that is being written. Each side may read one of the other's: of peers it gets
+        # the new. Of ours, where who receives looks at the same word for some cycles, it keeps what it had.
+        for port, side, name in ((write, "sending", "peers"), (ours, "receiving", "own")):
+            address, word = given[side, name]
             looked_at, written, wrote, new = Signal.like(address), Signal.like(address), Signal(), Signal(32)
             m.d.sync += [
                 looked_at.eq(address),
@@ -263,7 +263,7 @@ class Participant(wiring.Component):
                 new.eq(port.data),
             ]
             with m.If(wrote & (looked_at == written)):
-                m.d.sync += word.eq(new)
+                m.d.sync += word.eq(new if port is write else word)
         for hidden, name in ((composer.hide_peers, "peers"), (composer.hide_own, "own")):
             with m.If(hidden):
                 m.d.sync += given["sending", name][1].eq(0)

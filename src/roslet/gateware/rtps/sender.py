@@ -24,10 +24,10 @@ class Sender(wiring.Component):
 
     Ports: `publish0` .. for each writer of the user, the first `users` of the tables' writers: its messages. `job`, `valid`,
     `taken`, of `Turns`; `matched`, the user proxies that there are; `group_port`, where all are to be announced to,
-    and messages for the group at the next; `peers` and `own`, read ports, and `write`, whose data mean nothing while `en` is low; `template`, `start`, `done`, `which`,
-    `register`, `subject`, of the composer;
-    `room`, `busy`, `finish`, `ip`, `port`, of the outbox; `writers`, `readers`, a bit for each of ours that is enabled;
-    `again`, high for a cycle when every proxy must be served once.
+    and messages for the group at the next; `peers` and `own`, read ports, and `write`, whose data mean nothing while `en` is
+    low; `template`, `start`, `done`, `which`, `register`, `subject`, of the composer; `room`, `busy`, `finish`, `ip`,
+    `port`, of the outbox; `writers`, `readers`, a bit for each of ours that is enabled; `again`, high for a cycle when every
+    proxy must be served once.
 
     - When one of ours is enabled or disabled, all are told of again, under new numbers: of those that are not enabled, that
       they are gone.
