@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from amaranth.hdl import Assert, Assume, Cat, Const, Cover, Module, Mux, Signal, Value
 
 from gateware.formal import Bug, Spec, assume_steady
-from roslet.gateware.rtps import composer, outbox, parameters, queue, submessages, walker
+from roslet.gateware.rtps import composer, outbox, parameters, queue, submessages, tables, walker
 from roslet.gateware.rtps.rom import Op
 from roslet.gateware.rtps.tables import Local, OwnMap, PeerMap
 from roslet.wire.rtps.submessage import GAP
@@ -263,7 +263,7 @@ class ParametersSpec(Spec):
     written of it is there. `taken`: what comes is taken within some cycles, but for the end of what is read."""
 
     module = parameters
-    quick, deep = 17, 26
+    quick, deep = 20, 32
     bugs = (
         Bug("done", "self.done.eq(~i.payload.bad)", "self.done.eq(1)"),
         Bug(
@@ -271,23 +271,23 @@ class ParametersSpec(Spec):
             'with m.Elif(ended):\n                    m.next = "MALFORMED"',
             'with m.Elif(ended):\n                    m.next = "DONE"',
         ),
-        Bug("done", "left, at = Signal(15)", "left, at = Signal(2)"),
+        Bug("done", "v.at == length[2:]", "v.at[0] == length[2]"),
         Bug("stays", "i.ready.eq(self.proceed | i.payload.bad)", "i.ready.eq(1)"),
         Bug("told", "self.drop_malformed.eq(ended & ~i.payload.bad)", "self.drop_malformed.eq(0)"),
         Bug(
             "kept",
-            "keep(self._peers.scratch(at), word)",
-            "keep(self._peers.participant(Const(0, 1), at), word)",
+            "target = self._peers.scratch(",
+            "target = self._peers.participant(Signal(1), ",
         ),
         Bug(
             "quiet",
             "[self.done.eq(~i.payload.bad), ",
-            "[self.done.eq(~i.payload.bad), self.own.addr.eq(little), ",
+            "[self.done.eq(~i.payload.bad), self.own.addr.eq(v.little), ",
         ),
         Bug(
             "taken",
-            'with m.Elif(i.valid):\n                    m.next = "MALFORMED"',
-            'with m.Elif(i.valid):\n                    m.next = "PARAMETER"',
+            'with m.If(ended):\n                    m.next = "MALFORMED"',
+            'with m.If(ended):\n                    m.next = "PARAMETER"',
         ),
     )
 
@@ -324,7 +324,7 @@ class ParametersSpec(Spec):
         wrote, addresses = Signal(), Cat(dut.peers.addr, dut.own.addr, dut.write.addr, dut.write.data)
         m.d.sync += wrote.eq(dut.write.en)
         m.d.comb += [
-            Assert((i.valid & ~dut.done) | ~Cat(addresses, dut.write.en).any(), "quiet"),
+            Assert(((i.valid | rules.within) & ~dut.done) | ~Cat(addresses, dut.write.en).any(), "quiet"),
             Assert(~dut.done | ~wrote, "quiet"),
             Assert(~dut.done | (good & ((expected == beginning) | (expected == rest))), "done"),
             Assert(~held | (dut.done & (dut.read.as_value() == read) & (dut.same == same)), "stays"),
@@ -332,9 +332,9 @@ class ParametersSpec(Spec):
             Assert(~dut.drop_malformed | (rules.ended & good), "told"),
             Assert(~dut.write.en | (dut.write.addr[4:] == PeerMap(1, 1)._scratch >> 4), "kept"),
             Cover(dut.done & (expected == rest) & dut.read.refused, "refused"),
-            Cover(dut.write.en, "written"),
+            Cover(dut.write.en & (dut.write.addr[:4] != tables.LEASE), "written"),
         ]
-        waits(m, i, 6, ~dut.done | dut.proceed, "taken")
+        waits(m, i, 9, ~dut.done | dut.proceed, "taken")
 
 
 class OutboxSpec(Spec):

@@ -134,7 +134,9 @@ def publish(
         m.d.sync += in_group.eq(theirs[tables.PORT_GROUP])
         m.next = "READER START"
     with m.State("READER START"):
-        m.d.sync += start.eq(work.age_of(theirs))
+        m.next = "READER AGE"
+    with m.State("READER AGE"):
+        m.d.sync += start.eq(work.age_of_given())
         m.next = "READER OLDEST"
     with m.State("READER OLDEST"):
         with m.If(work.reliable):

@@ -16,7 +16,6 @@ def repeat(m: Module, work: Sending, asked: Value, writers: Value, readers: Valu
     From HEARTBEAT on with `work.publishing`: the message of the user's goes with the heartbeat, and NEXT READER follows.
     """
     ports, subject, own = work.ports, work.subject, work.own
-    theirs = ports.peers.data
     ask_to, start = Signal(work.age_shape), Signal(work.age_shape)
     unacknowledged, lost = Signal(), Signal()
     over = Signal()  # nothing more is asked for
@@ -37,20 +36,23 @@ def repeat(m: Module, work: Sending, asked: Value, writers: Value, readers: Valu
         m.next = "START"
     with m.State("START"):
         m.d.comb += work.increment.eq(0)
-        m.d.sync += [work.last_high.eq(work.sum), start.eq(work.age_of(theirs))]
+        m.d.sync += work.last_high.eq(work.sum)
         work.ask(m, tables.ASK_FROM)
         m.next = "ACKED"
     with m.State("ACKED"):
-        m.d.sync += [unacknowledged.eq(~work.difference(theirs)[31]), work.oldest.eq(ports.own.data)]
+        m.d.sync += [start.eq(work.age_of_given()), work.oldest.eq(ports.own.data)]
         work.ask(m, tables.ASK_TO)
         m.next = "ASK FROM"
     with m.State("ASK FROM"):
-        m.d.sync += [work.age.eq(work.age_of(theirs)), work.borrowed.eq(work.difference(theirs)[32])]
+        m.d.sync += unacknowledged.eq(~work.behind[31])
         with m.If(start < work.oldest):
             m.d.sync += work.oldest.eq(start)
         m.next = "ASK TO"
     with m.State("ASK TO"):
-        age = work.age_of(theirs)
+        m.d.sync += [work.age.eq(work.age_of_given()), work.borrowed.eq(work.behind[32])]
+        m.next = "ASKED"
+    with m.State("ASKED"):
+        age = work.age_of_given()
         m.d.sync += ask_to.eq(Mux(age[-1], 0, age))
         m.next = "JUDGE"
     with m.State("JUDGE"):

@@ -210,10 +210,10 @@ class Sender(wiring.Component):
             work.ask_own(m, tables.WRITER_COUNT)
             m.next = "MISSING"
         with m.State("MISSING"):
-            m.d.sync += work.age.eq(work.age_of(self.peers.data))
             m.next = "ACKNACK"
             with m.If(self.peers.data == 0):
                 m.next = "IDLE"  # nothing has been heard of it
         with m.State("ACKNACK"):
+            m.d.sync += work.age.eq(work.age_of_given())
             work.store(m, tables.WRITER_COUNT)
             work.compose(m, work.by_kind("acknack"), "IDLE", COMPOSE)

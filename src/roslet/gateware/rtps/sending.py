@@ -59,6 +59,10 @@ class Sending:
             m.d.sync += sender.port.eq(sender.peers.data)
         with m.If(self.to_all):
             m.d.sync += [sender.ip.eq(GROUP), sender.port.eq(self.group_port)]
+        # By how much what they gave a cycle before is behind the last: the highest bit is borrowed from the words above, the
+        # next says that it is yet to come.
+        self.behind = Signal(33)
+        m.d.sync += self.behind.eq(self.last - sender.peers.data)
         self._numbers(m)
         m.d.comb += self.subject.missing.eq(
             Cat(self.age >= n for n in reversed(range(window))) << 32 - window
@@ -83,17 +87,11 @@ class Sending:
         self.number = difference[:32]
         self._borrow = (-difference[32:34].as_signed())[:2].as_signed()
 
-    def difference(self, number: Value) -> Value:
-        """By how much it is behind the last, in 33 bits: of those the highest is borrowed from the words above, and the next
-        says that the number is yet to come."""
-        return (self.last - number)[:33]
-
-    def age_of(self, number: Value) -> Value:
-        """The age of a number, of which the lower word is here."""
-        bits = len(self.age) - 1
-        difference = self.difference(number)
-        older = Mux(difference[bits:31].any(), self.max_age, difference[:bits])
-        return Mux(difference[31], -1, older).as_signed()
+    def age_of_given(self) -> Value:
+        """The age of the number whose lower word peers gave a cycle before."""
+        bits, behind = len(self.age) - 1, self.behind
+        older = Mux(behind[bits:31].any(), self.max_age, behind[:bits])
+        return Mux(behind[31], -1, older).as_signed()
 
     # -- what states do
 

@@ -44,6 +44,9 @@ INFO_WRITER, INFO_RELIABLE = 16, 17
 # Bits of USER_PORT and PORT, beside the port: the group is as good; of USER_PORT, it is in our subnet
 PORT_GROUP, PORT_NEAR = 16, 17
 
+LEASE_BITS = 17
+"""Of a lease's seconds: of one of 18 hours and more there are kept the highest of these, set, and those below. What is LEFT
+has one bit more: it is less than nothing."""
 MAX_PEERS = 128
 """Their numbers have eight bits, with one to spare."""
 EVERYTHING = 0x7FFFFFFF
@@ -142,7 +145,7 @@ class Local:
 
 
 # Of our own memory
-OWN_PREFIX, OWN_IP, META_PORT_OWN, USER_PORT_OWN = 0, 3, 4, 5
+OWN_PREFIX, OWN_IP, META_PORT_OWN, USER_PORT_OWN, ZERO = 0, 3, 4, 5, 6
 OWN_WORDS = 8
 # Of a writer: the number of its last message; how many before that are kept, -1 where there is none; and the count of the
 # heartbeats that it sends, and of the ACKNACKs of our reader with the same number: each needs one that rises, no more
