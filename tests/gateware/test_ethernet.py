@@ -102,12 +102,8 @@ def test_frames_to_be_sent_get_their_header(stalls: int) -> None:
     configure(bench)
     bench.send(
         "i",
-        [b"question", b"", Bad(b"spoilt")],
-        [
-            {"destination": number(BROADCAST), "type": 0x0806},
-            {"destination": number(SOURCE), "type": 0x0800},
-            {"destination": number(SOURCE), "type": 0x0800},
-        ],
+        [BROADCAST + b"question", SOURCE, Bad(SOURCE + b"spoilt")],
+        [{"type": 0x0806}, {"type": 0x0800}, {"type": 0x0800}],
     )
     got = bench.receive("o")
     bench.run(lambda: len(got) == 3)

@@ -156,6 +156,10 @@ class Tables(Elaboratable):
             given = Signal(32, name=f"{name}_given")
             m.d.sync += given.eq(read.data)
             m.d.comb += [user.data.eq(given) for user in users]
+            for block in self._blocks.values():
+                if f"hide_{name}" in block.signature.members:
+                    with m.If(getattr(block, f"hide_{name}")):
+                        m.d.sync += given.eq(0)
         write = self.peers_memory.write_port()
         ports = [
             getattr(block, name)

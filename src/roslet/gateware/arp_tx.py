@@ -7,7 +7,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.arp_rx import FIXED_SIZE, IP_SIZE, MAC_SIZE, SENDER_SIZE, fixed
-from roslet.gateware.meta import ADDRESSES, ETHERNET_TX
+from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, HOP
 from roslet.gateware.multicast import BROADCAST
 from roslet.gateware.octets import octets, pick
 from roslet.gateware.stream import FrameSignature
@@ -21,7 +21,8 @@ class ArpTx(wiring.Component):
     octet in each of the next 10 cycles, in which `rotate` is high: the hardware address, then the IP address. `request`: for
     `ip`, which stays until `loading`, high for the same 10 cycles, is over. `announce`: a request for our own address, which
     nobody answers (RFC 5227, 2.3).
-    Then `o` gives the message without padding: an octet each cycle, without a pause, and the end after 28.
+    Then `o` gives the destination and the message without padding: an octet each cycle, without a pause, and the end after
+    34.
 
     Two shift registers, in place of multiplexers, hold the target: one for the header, one for the message.
     """
@@ -46,12 +47,12 @@ class ArpTx(wiring.Component):
         m = Module()
         o = self.o.stream
         replying, announcing = Signal(), Signal()
-        destination = Signal(8 * MAC_SIZE)
+        hop = Signal(8 * HOP)
         target = Signal(8 * SENDER_SIZE)
         at = Signal(range(SENDER_SIZE))
         last = at == SENDER_SIZE - 1
         in_ip = at[3] | (at[2] & at[1])  # MAC_SIZE or more
-        m.d.comb += [self.o.meta.destination.eq(destination), self.o.meta.type.eq(ethernet.ARP)]
+        m.d.comb += self.o.meta.type.eq(ethernet.ARP)
 
         own = Cat(self.addresses.mac, self.addresses.ip)
         own_octet = pick(octets(own), at)
@@ -64,9 +65,11 @@ class ArpTx(wiring.Component):
         ):  # a request says nothing of its target's hardware address, which is written as zeros
             m.d.comb += octet.eq(Mux(announcing, own_octet, ip_octet))
 
-        shift = Signal()
+        shift, shift_hop = Signal(), Signal()
         with m.If(shift):
             m.d.sync += target.eq(Cat(target[8:], octet))
+        with m.If(shift_hop):
+            m.d.sync += hop.eq(Cat(hop[8:], Mux(replying, octet, BROADCAST[0])))
 
         def counted(size: int, then: str) -> None:
             with m.If(o.ready):
@@ -85,12 +88,13 @@ class ArpTx(wiring.Component):
                 m.d.comb += [self.loading.eq(1), self.rotate.eq(replying)]
                 m.d.comb += shift.eq(1)
                 m.d.sync += at.eq(at + 1)
-                with m.If(~in_ip):
-                    everybody = BROADCAST[0]
-                    m.d.sync += destination.eq(Cat(destination[8:], Mux(replying, octet, everybody)))
+                m.d.comb += shift_hop.eq(~in_ip)
                 with m.If(last):
                     m.d.sync += at.eq(0)
-                    m.next = "FIXED"
+                    m.next = "DESTINATION"
+            with m.State("DESTINATION"):
+                m.d.comb += [o.valid.eq(1), o.payload.data.eq(hop[:8]), shift_hop.eq(o.ready)]
+                counted(HOP, "FIXED")
             with m.State("FIXED"):
                 operation = Mux(replying, arp.REPLY, arp.REQUEST)
                 m.d.comb += [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Cat, Module, Signal
+from amaranth.hdl import C, Cat, Module, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -14,14 +14,10 @@ class SerialSum(wiring.Component):
     Ports: `clear` begins anew (it wins over `add`); with `add` the octet `data` is taken, in that cycle. All that is said of
     the sum is of what was taken until the cycle before; it is not complemented: 0xFFFF over data with a right checksum in
     it. `result` is the half that the next octet goes to. `right`: the sum is 0xFFFF, be the number of octets odd or even.
-    `sum` is the sum if what was taken last were `SETTLE` zeros, after an even number of octets: by then no carry waits.
 
     To spell the sum of an even number of octets, add two octets of 0: as each is, `result` gives a half, the upper first,
     where the last octet before them was not 0xFF (else the lower may carry into the upper, which is out).
     """
-
-    SETTLE = 4
-    """A carry goes round once at most, as two octets of 0xFF become 0 by it; and four is even."""
 
     def __init__(self) -> None:
         super().__init__(
@@ -31,7 +27,6 @@ class SerialSum(wiring.Component):
                 "data": In(8),
                 "result": Out(8),
                 "right": Out(1),
-                "sum": Out(16),
             }
         )
 
@@ -41,10 +36,9 @@ class SerialSum(wiring.Component):
         carry = Signal()
         total = Signal(9)
         m.d.comb += [
-            total.eq(turn + self.data + carry),
+            total.eq((Cat(C(1, 1), turn) + Cat(carry, self.data))[1:]),
             self.result.eq(turn + carry),
             self.right.eq(other.all() & turn[1:].all() & (turn[0] ^ carry)),
-            self.sum.eq(Cat(other, turn)),
         ]
         with m.If(self.clear):
             m.d.sync += [turn.eq(0), other.eq(0), carry.eq(0)]

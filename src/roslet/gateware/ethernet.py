@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Const, Module, Mux, Signal, Value
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
 from roslet.gateware import multicast
-from roslet.gateware.header import HeaderReader, HeaderWriter
-from roslet.gateware.meta import ADDRESSES, ETHERNET_RX, ETHERNET_TX
+from roslet.gateware.header import HeaderReader, wire_order
+from roslet.gateware.meta import ADDRESSES, ETHERNET_RX, ETHERNET_TX, HOP
 from roslet.gateware.octets import octets, pick
 from roslet.gateware.stream import FrameSignature
 from roslet.wire.net import ethernet
@@ -107,10 +107,10 @@ class EthernetRx(wiring.Component):
 
 
 class EthernetTx(wiring.Component):
-    """Puts the Ethernet header before each frame, with `addresses.mac` as its sender; padding is the MAC's.
+    """Puts `addresses.mac`, as the sender, and the type behind the destination of each frame; padding is the MAC's.
 
-    Ports: `i`, frames with their destination and type; `o`, frames from the destination on. Throughput one octet a cycle,
-    no latency: a frame's header begins when its first item is valid, which then waits for 14 cycles. A bad end is passed on.
+    Ports: `i`, frames that begin with their destination (HOP), and their type; `o`, frames with the header. Throughput one
+    octet a cycle, no latency: what comes behind the destination waits for 8 cycles. A bad end is passed on.
     """
 
     def __init__(self) -> None:
@@ -124,12 +124,21 @@ class EthernetTx(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        m.submodules.writer = writer = HeaderWriter(ethernet.FIELDS)
-        m.d.comb += [
-            writer.i.meta.destination.eq(self.i.meta.destination),
-            writer.i.meta.source.eq(self.addresses.mac),
-            writer.i.meta.type.eq(self.i.meta.type),
-        ]
-        connect(m, wiring.flipped(self.i).stream, writer.i.stream)
-        connect(m, writer.o, flipped(self.o))
+        i, o = self.i.stream, self.o.stream
+        header = [field for field in ethernet.FIELDS if field.name != "destination"]
+        values = {"source": self.addresses.mac, "type": self.i.meta.type}
+        own = octets(Cat(wire_order(field, Value.cast(values[field.name])) for field in header))
+        at = Signal(range(HOP + len(own) + 1))  # which octet of the header; behind it, it stays
+        assert len(own) == 8
+        inserting = at[3] ^ (at[1] & at[2])  # 6 to 13 of 0 to 14
+        m.d.comb += o.valid.eq(i.valid)
+        with m.If(inserting):
+            m.d.comb += o.payload.data.eq(pick(own[-HOP:] + own[:-HOP], at[:3]))
+        with m.Else():
+            m.d.comb += [o.payload.eq(i.payload), i.ready.eq(o.ready)]
+        with m.If(i.valid & o.ready):
+            with m.If(i.payload.end & ~inserting):
+                m.d.sync += at.eq(0)
+            with m.Elif(at != HOP + len(own)):
+                m.d.sync += at.eq(at + 1)
         return m

@@ -5,14 +5,14 @@ A field is a number, or octets in the order of the wire, the first in the lowest
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
-from amaranth.hdl import Cat, Const, Module, ShapeLike, Signal, Value, unsigned
+from amaranth.hdl import Cat, Module, ShapeLike, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from roslet.gateware.octets import octets, pick
+from roslet.gateware.octets import octets
 from roslet.gateware.stream import FrameSignature
 from roslet.wire.fields import OCTETS, Field
 
@@ -88,44 +88,4 @@ class HeaderReader(wiring.Component):
             for n, octet in enumerate(kept):
                 with m.If(i.valid & (at == field.offset + n)):
                     m.d.sync += octet.eq(i.payload.data)
-        return m
-
-
-class HeaderWriter(wiring.Component):
-    """Puts a header before each frame.
-
-    `constants` are fields whose values never change; the others come from `i.meta`, whose layout is `writer.layout`.
-    Ports: `i`, frames and their header's fields; `o`, frames with the header, without meta.
-
-    Throughput one octet a cycle. The header begins in the cycle in which the first item of `i` is valid, which then waits
-    until the header is out; the rest passes without a register. Holds nothing. A frame whose first item is a bad end gets
-    its header all the same, and the bad end after it.
-    """
-
-    def __init__(self, fields: tuple[Field, ...], constants: Mapping[str, int] | None = None) -> None:
-        self._fields = fields
-        self._constants = dict(constants or {})
-        self._size = fields[-1].offset + fields[-1].bits // 8
-        self.layout = header_layout(fields, [f.name for f in fields if f.name not in self._constants])
-        super().__init__({"i": In(FrameSignature(self.layout)), "o": Out(FrameSignature())})
-
-    def elaborate(self, platform: object) -> Module:
-        m = Module()
-        i, o = self.i.stream, self.o.stream
-        at = Signal(range(self._size + 1))
-        header: list[Value] = []
-        for field in self._fields:
-            if field.name in self._constants:
-                value: Value = Const(self._constants[field.name], unsigned(field.bits))
-            else:
-                value = Value.cast(self.i.meta[field.name])
-            header += octets(wire_order(field, value))
-        with m.If(at == self._size):
-            m.d.comb += [o.payload.eq(i.payload), o.valid.eq(i.valid), i.ready.eq(o.ready)]
-            with m.If(i.valid & o.ready & i.payload.end):
-                m.d.sync += at.eq(0)
-        with m.Else():
-            m.d.comb += [o.valid.eq(i.valid), o.payload.data.eq(pick(header, at))]
-            with m.If(i.valid & o.ready):
-                m.d.sync += at.eq(at + 1)
         return m

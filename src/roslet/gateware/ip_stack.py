@@ -46,6 +46,7 @@ class IpStack(wiring.Component):
     longest     octets of data that `udp_tx` has at most: where all fits into packets, there is no logic to cut
     registers   whether there are some between blocks: without them paths are too long for 100 MHz
     igmp        whether there is a port for what comes of that protocol
+    hop         whether each packet at `tx` begins with the hardware address that it goes to
 
     Ports: `rx` and `tx`, packets from and to a link; `udp_rx`, the data of every UDP datagram for this node, whatever its
     port; `udp_tx`, data to be sent; `igmp`; `addresses`; `expiration` and `ip_payloadsmem` as `Reassembly` has them.
@@ -62,10 +63,11 @@ class IpStack(wiring.Component):
         igmp: bool = False,
         longest: int = LONGEST - udp.SIZE,
         registers: bool = True,
+        hop: bool = True,
     ) -> None:
         self._registers = registers
         sizes = [udp.SIZE + longest, *([] if echo_data is None else [icmp.SIZE + echo_data])]
-        self._packets = Ipv4Tx(mtu=mtu, max_length=min(LONGEST, max(sizes)))
+        self._packets = Ipv4Tx(mtu=mtu, max_length=min(LONGEST, max(sizes)), hop=hop)
         echo = {} if echo_data is None else {"icmp": IcmpEcho(echo_data)}
         self._protocols = [*([ipv4.ICMP] if echo else []), ipv4.UDP, *([ipv4.IGMP] if igmp else [])]
         self._blocks: dict[str, Any] = {

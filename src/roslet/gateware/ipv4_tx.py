@@ -8,7 +8,8 @@ from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.checksum import SerialSum
 from roslet.gateware.header import wire_order
-from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, IPV4_TX
+from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, HOP, IPV4_TX
+from roslet.gateware.octets import octets, pick
 from roslet.gateware.stream import FrameSignature
 from roslet.wire.net import ethernet
 from roslet.wire.net import ipv4 as table
@@ -31,20 +32,22 @@ _OFFSET = {field.name: field.offset for field in table.FIELDS}
 class Ipv4Tx(wiring.Component):
     """Puts an IPv4 header before each payload, or several where it is longer than the `mtu` allows.
 
-    Ports: `i`, payloads, `meta.length` being the number of their octets, `max_length` at most; `o`, IPv4 packets on their
-    way to `meta.mac`; `addresses`, of which the source is. `ttl` is the time to live.
+    Ports: `i`, payloads, `meta.length` being the number of their octets, `max_length` at most; `o`, IPv4 packets, with `hop`
+    each behind the hardware address `meta.mac`; `addresses`, of which the source is. `ttl` is the time to live.
 
     A datagram's fragments have the same identification, the next one's is one more. DF is clear. Where `max_length` fits
     into one packet, there is no logic to cut. Protocol 255, which is reserved, must not be asked for (see SerialSum).
 
     The first octet stands at `o` 8 cycles after the first item at `i`, which waits for the header, of 20 octets; the rest
-    passes without a register. So a packet costs 28 cycles and its payload. Holds nothing.
+    passes without a register. So a packet costs 28 cycles and its payload, with `hop` 6 more. Holds nothing.
 
     A payload that ends badly does so behind its header. One that ends before `length`, or after it, is made to end badly;
     fragments of it that are out already are good, and the receiver waits for the last in vain.
     """
 
-    def __init__(self, ttl: int = TTL, mtu: int = ethernet.MTU, max_length: int = LONGEST) -> None:
+    def __init__(
+        self, ttl: int = TTL, mtu: int = ethernet.MTU, max_length: int = LONGEST, hop: bool = True
+    ) -> None:
         if not 1 <= ttl <= 255:
             raise ValueError(f"a time to live is 1 to 255, not {ttl}")
         if not MINIMUM_MTU <= mtu <= 0xFFFF:
@@ -53,6 +56,7 @@ class Ipv4Tx(wiring.Component):
             raise ValueError(f"a payload has 1 to {LONGEST} octets at most, not {max_length}")
         self._ttl = ttl
         self._max_length = max_length
+        self._hop = hop
         room = mtu - table.SIZE
         self._piece = room & ~7  # what is not last has a multiple of 8 octets: RFC 791, 3.1
         self._whole = room
@@ -113,18 +117,13 @@ class Ipv4Tx(wiring.Component):
             "source": self.addresses.ip,
             "destination": meta.destination,
         }
-        with m.Switch(at):
-            for field in table.FIELDS:
-                value = wire_order(field, numbers[field.name])
-                for n in range(field.bits // 8):
-                    with m.Case(field.offset + n):
-                        m.d.comb += octet.eq(value.word_select(n, 8))
+        header = octets(Cat(wire_order(field, numbers[field.name]) for field in table.FIELDS))
+        m.d.comb += octet.eq(pick(header, at))
         spelling = (at == _OFFSET["checksum"]) | (at == _OFFSET["checksum"] + 1)
 
         m.d.comb += [
             header_sum.data.eq(octet),
             header_sum.clear.eq(packet_done),
-            self.o.meta.destination.eq(meta.mac),
             self.o.meta.type.eq(ethernet.IPV4),
         ]
 
@@ -142,7 +141,14 @@ class Ipv4Tx(wiring.Component):
                     m.d.sync += total.eq(table.SIZE + meta.length)
                 with m.If(at == last):
                     m.d.sync += at.eq(0)
-                    m.next = "HEADER"
+                    m.next = "HOP" if self._hop else "HEADER"
+            with m.State("HOP"):
+                m.d.comb += [o.valid.eq(1), o.payload.data.eq(pick(octets(meta.mac), at))]
+                with m.If(o.ready):
+                    m.d.sync += at.eq(at + 1)
+                    with m.If(at == HOP - 1):
+                        m.d.sync += at.eq(0)
+                        m.next = "HEADER"
             with m.State("HEADER"):
                 m.d.comb += [
                     o.valid.eq(1),

@@ -15,8 +15,12 @@ ADDRESSES = data.StructLayout({"mac": 48, "ip": 32, "gateway": 32, "mask": 32})
 ETHERNET_RX = data.StructLayout({"source": 48, "group": 1})
 """Behind an Ethernet header: who sent it, and whether it came by a multicast or broadcast address."""
 
-ETHERNET_TX = data.StructLayout({"destination": 48, "type": 16})
-"""Before an Ethernet header."""
+HOP = 6
+"""So many octets, the hardware address that it goes to, begin each frame on its way to Ethernet: octets pass where 48 bits
+beside them would need multiplexers."""
+
+ETHERNET_TX = data.StructLayout({"type": 16})
+"""Before an Ethernet header, behind the destination."""
 
 IPV4_RX = data.StructLayout(
     {"mac": 48, "source": 32, "destination": 32, "protocol": 8, "length": 16, "group": 1}

@@ -114,7 +114,9 @@ class SlipStack(wiring.Component):
             raise ValueError(f"a packet has {ethernet.MTU} octets at most, not {mtu}")
         self._askers = askers
         self._groups = GroupFilter(groups)
-        self._ip = ip = IpStack(echo_data, pendings, fragments, fragment_size, mtu, False, longest, registers)
+        self._ip = ip = IpStack(
+            echo_data, pendings, fragments, fragment_size, mtu, False, longest, registers, hop=False
+        )
         self._drops = drop_outputs({"groups": self._groups})
         self._ip_drops = [name for name in ip.signature.members if name.startswith("drop_")]
         members = ip.signature.members

@@ -16,9 +16,11 @@ from roslet.gateware.ethernet import EthernetRx, EthernetTx
 from roslet.gateware.icmp import MAX_DATA
 from roslet.gateware.igmp import Igmp
 from roslet.gateware.ip_stack import IpStack
+from roslet.gateware.ipv4_tx import LONGEST
 from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, LookupSignature
 from roslet.gateware.stream import FrameSignature
 from roslet.gateware.wires import expose
+from roslet.wire.net import udp
 
 ARP_SETTINGS = ("retry_count", "retry_interval", "timeout")
 
@@ -33,6 +35,7 @@ class UdpStack(wiring.Component):
     echo_data    the most data of a ping that is answered
     fragments    of a datagram, at most; `pendings` datagrams wait for theirs at once, each fragment with up to
                  `fragment_size` octets; with 1 there is no reassembly, nor the ports for it
+    longest      octets of data that `udp_tx` has at most
 
     Ports: `rx` and `tx`, frames from and to a MAC; `udp_rx`, the data of every UDP datagram for this node, whatever its
     port; `udp_tx`, data to be sent, whose hardware addresses are asked for by `lookup0 ..`; `addresses`, and `groups`, those
@@ -53,9 +56,12 @@ class UdpStack(wiring.Component):
         pendings: int = 1,
         fragments: int = 2,
         fragment_size: int = 1480,
+        longest: int = LONGEST - udp.SIZE,
     ) -> None:
         self._askers = askers
-        self._ip = ip = IpStack(echo_data, pendings, fragments, fragment_size, igmp=groups > 0)
+        self._ip = ip = IpStack(
+            echo_data, pendings, fragments, fragment_size, igmp=groups > 0, longest=longest
+        )
         self._blocks: dict[str, Any] = {
             "ethernet": EthernetRx(groups),
             "arp": Arp(cache_width),

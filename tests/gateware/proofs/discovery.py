@@ -50,8 +50,8 @@ class CutParameters(wiring.Component):
         m.d.comb += self.i.stream.ready.eq(Mux(self.done, self.proceed, self.takes))
         return m
 
-    def contract(self, m: Module) -> None:
-        """Assume it."""
+    def contract(self, m: Module, within: Value) -> None:
+        """Assume it. `within`: a list's first item was there before."""
         i = self.i.stream
         good = i.valid & i.payload.end & ~i.payload.bad
         held, read, same = Signal(), Signal.like(self.read.as_value()), Signal.like(self.same)
@@ -65,7 +65,7 @@ class CutParameters(wiring.Component):
             Assume(~(good & i.ready) | (self.done ^ self.drop_malformed), "told"),
             Assume(~self.drop_malformed | (good & i.ready), "told"),
             Assume(~self.write.en | (self.write.addr[4:] == PEERS._scratch >> 4), "kept"),
-            Assume((i.valid & ~self.done) | (addresses == 0), "quiet"),
+            Assume(((i.valid | within) & ~self.done) | (addresses == 0), "quiet"),
             Assume(~self.done | ~wrote, "quiet"),
         ]
 
@@ -78,8 +78,8 @@ class PeerMemory:
         every = range(PEERS.participants), range(PEERS.endpoints)
         slot_bits, place_bits = PEERS.slot_bits, PEERS.endpoint_bits
         self.prefix = [Signal(IDS, name=f"prefix{n}") for n in every[0]]
-        self.lease = [Signal(LEASE + 1, name=f"lease{n}") for n in every[0]]
-        self.left = [Signal(LEASE + 1, name=f"left{n}") for n in every[0]]
+        self.lease = [Signal(LEASE, name=f"lease{n}") for n in every[0]]
+        self.left = [Signal(tables.LEASE_BITS + 1, name=f"left{n}") for n in every[0]]
         self.key = [Signal(IDS, name=f"key{n}") for n in every[1]]
         self.info = [Signal(18, name=f"info{n}") for n in every[1]]
         rows: list[tuple[Value, Signal]] = []
@@ -92,7 +92,7 @@ class PeerMemory:
             place = Const(n, place_bits)
             rows += [(PEERS.endpoint(place, tables.KEY), self.key[n])]
             rows += [(PEERS.endpoint(place, tables.INFO), self.info[n])]
-        self.sender, self.entity = Signal(IDS), Signal(IDS)
+        self.sender, self.entity, self.announced = Signal(IDS), Signal(IDS), Signal(LEASE)
         """What the scratch area has."""
         put = Signal(len(write.en) + len(write.addr) + len(write.data))
         m.d.sync += put.eq(Cat(write.en, write.addr, write.data))
@@ -100,8 +100,12 @@ class PeerMemory:
         anything = spec.free(32, "anything")
         raw = Signal(32)
         m.d.sync += raw.eq(anything)
-        scratch = ((tables.PREFIX, self.sender), (tables.SCRATCH_ENTITY, self.entity))
-        for place, word in (*rows, *((PEERS.scratch(n), value) for n, value in scratch)):
+        scratch = {
+            tables.PREFIX: self.sender,
+            tables.LEASE: self.announced,
+            tables.SCRATCH_ENTITY: self.entity,
+        }
+        for place, word in (*rows, *((PEERS.scratch(n), value) for n, value in scratch.items())):
             with m.If((address == place) & ~(written & (at == place))):
                 m.d.sync += raw.eq(word)
         for n, (place, word) in enumerate(rows):
@@ -113,7 +117,7 @@ class PeerMemory:
         m.d.sync += self.given.eq(raw)
 
 
-LOADS = "m.d.sync += [addressed.eq(step), before.eq(addressed)]"
+LOADS = "m.d.sync += [step.eq(step + 1), addressed.eq(step), before.eq(addressed)]"
 
 
 class _Tables(Spec):
@@ -178,23 +182,25 @@ class _Tables(Spec):
         """Assume what `Walker`, `Submessages` and `Parameters` give."""
         dut, memory = self.dut, self.memory
         frames = self.assume(m, "i")
-        self.cut.contract(m)
+        self.cut.contract(m, frames.within)
         i, meta = dut.i.stream, dut.i.meta
         begins = i.valid & ~frames.within
         fresh = self.free(1, "fresh")  # its sender was looked up, and not only seen to be there still
         over = Signal(init=1)  # the datagram before is
         sender, known, slot = Signal(IDS), Signal(), Signal(8)
-        entity = Signal(IDS)
+        entity, lease = Signal(IDS), Signal(LEASE)
         with m.If(dut.idle):
             m.d.sync += over.eq(1)
         with m.Elif(begins):
             m.d.sync += over.eq(0)
         with m.If(begins):
             m.d.sync += [sender.eq(memory.sender), known.eq(meta.known), slot.eq(meta.slot)]
-            m.d.sync += entity.eq(memory.entity)
+        done = Signal()  # the list was already: nothing more of it is written
+        m.d.sync += [done.eq(self.cut.done), entity.eq(memory.entity), lease.eq(memory.announced)]
         m.d.comb += [
             memory.sender.eq(Mux(begins, self.free(IDS, "its_prefix"), sender)),
-            memory.entity.eq(Mux(begins, self.free(IDS, "its_entity"), entity)),
+            memory.entity.eq(Mux(done, entity, self.free(IDS, "its_entity"))),
+            memory.announced.eq(Mux(done, lease, self.free(LEASE, "its_lease"))),
         ]
         self.is_sender = [dut.alive[n] & (prefix == memory.sender) for n, prefix in enumerate(memory.prefix)]
         held = Signal()
@@ -208,9 +214,7 @@ class _Tables(Spec):
             Assume(~begins | fresh | ~over, "looked up"),
             Assume(~begins | ~meta.known | (meta.slot < PEERS.participants), "a slot"),
             Assume(~begins | (meta.kind == ports.PARTICIPANTS) | meta.known, "of somebody"),
-            Assume(~dut.heard | (dut.heard_slot < PEERS.participants), "a slot"),
-            Assume(self.cut.read.entity[IDS:] == 0, "an entity"),
-            Assume(self.cut.read.lease[LEASE:] == 0, "a lease"),
+            Assume(~dut.heard | ((dut.heard_slot < PEERS.participants) & ~self.cut.done), "a slot"),
         ]
         if self.once:
             third, ended = Signal(), Signal()
@@ -259,7 +263,7 @@ class _Tables(Spec):
         complete = read.guid & read.topic & read.type
         self.matching = of_endpoint & ~meta.gone & complete & agrees
         self.ending = of_endpoint & (meta.gone & (read.guid | meta.has_key) | ~meta.gone & complete & ~agrees)
-        self.entity = Mux(read.guid, read.entity, self.memory.entity)
+        self.entity = self.memory.entity
         self.is_its = [
             of_endpoint
             & (self.memory.key[n] == self.entity)
@@ -276,23 +280,25 @@ class _Tables(Spec):
         self.swept = swept = Signal()
         m.d.comb += swept.eq(held & ~dut.hold)
         self.expired: list[Value] = []
-        settled = ~self.cut.done & ~dut.hold
+        done = Signal()  # in the cycle before: what was written last is there in the next
+        m.d.sync += done.eq(self.cut.done)
+        settled = ~self.cut.done & ~done & ~dut.hold
         for n in range(PEERS.participants):
             lively, silent, lease = Signal(), Signal(LEASE + 2), Signal(LEASE + 2)
-            expired = ~lively & (silent >= lease)
+            expired = ~lively & (silent > lease)
             self.expired.append(expired)
             counts = dut.alive[n] & ~lively & settled & ~swept
             m.d.comb += [
                 Assume(~self.second | (lease == memory.lease[n]), "lease"),
-                Assume(~self.second | lively | (silent + memory.left[n] == lease), "lease"),
+                Assume(~self.second | lively | (silent + memory.left[n].as_signed() == lease), "lease"),
                 Assert(~(dut.alive[n] & settled) | (memory.lease[n] == lease), "lease"),
-                Assert(~counts | (silent + memory.left[n] == lease), "lease"),
+                Assert(~counts | (silent + memory.left[n].as_signed() == lease), "lease"),
                 Assert(~(swept & dut.alive[n] & expired), "expires"),
             ]
             with m.If(swept):
                 m.d.sync += [lively.eq(0), silent.eq(Mux(lively, 0, silent + 1))]
             with m.If(self.cut.proceed & self.announcing & self.is_sender[n]):
-                m.d.sync += [lively.eq(1), lease.eq(self.cut.read.lease + 1)]
+                m.d.sync += [lively.eq(1), lease.eq(memory.announced)]
             with m.If(dut.heard & (dut.heard_slot == n)):
                 m.d.sync += lively.eq(1)
             with m.If(self.first):
@@ -346,26 +352,33 @@ class ParticipantsSpec(_Tables):
     """
 
     quick, deep = 24, 36
-    scale = (*_Tables.scale, ("with m.If(step[:4] == 15):", "with m.If(step[:4] == 3):"))
+    scale = (
+        *_Tables.scale,
+        ("with m.If(step == 15 + READ_LATENCY):", "with m.If(step == 3 + READ_LATENCY):"),
+    )
     bugs = (
         Bug(
             "of_somebody",
             "step == peers.endpoints + READ_LATENCY - 1",
             "step == peers.endpoints + READ_LATENCY - 2",
         ),
-        Bug("evicted", "with m.If(left != 0):", "with m.If(left[1:] != 0):"),
-        Bug("expires", "with m.If(left != 0):", "with m.If(1):"),
-        Bug("lease", "Mux(before >= tables.LEASE, lease", "Mux(before > tables.LEASE, lease"),
+        Bug(
+            "evicted",
+            "with m.If(~self.peers.data[tables.LEASE_BITS]):",
+            "with m.If(self.peers.data[:tables.LEASE_BITS].any()):",
+        ),
+        Bug("expires", "with m.If(~self.peers.data[tables.LEASE_BITS]):", "with m.If(1):"),
+        Bug("lease", "step == tables.LEASE + READ_LATENCY", "step == tables.USER_PORT + READ_LATENCY"),
         Bug(
             "left",
             'm.If(meta.known):\n                m.next = "REMOVE"',
             "m.If(meta.known):\n                pass",
         ),
         Bug("earned", "with m.Elif(read.refused):", "with m.Elif(0):"),
-        Bug("entered", "with m.Elif(~meta.known & arrived):", "with m.Elif(~meta.known & heard.any()):"),
+        Bug("entered", "with m.Elif(~meta.known & arrived):", "with m.Elif(~meta.known & self.alive.any()):"),
         Bug("greeted", "self.greet.eq(1)", "self.greet.eq(read.user)"),
         Bug("words", "with m.Elif(~meta.known & self._slots.full):", "with m.Elif(0):"),
-        Bug("lost", "tables.INFO_SLOT + 8] == slot", "tables.INFO_SLOT + 8] != slot"),
+        Bug("lost", "tables.INFO_SLOT + len(slot)] == slot", "tables.INFO_SLOT + len(slot)] != slot"),
         Bug(
             "full",
             "with m.Elif(~meta.known & self._slots.full):",
@@ -443,14 +456,14 @@ class EndpointsSpec(_Tables):
             "with m.If(~found | ~self._places.full):\n"
             "                    m.d.sync += [endpoint.eq(self._places.free), found.eq(0)]",
         ),
-        Bug("right", "is_writer, reliable),", "is_writer, read.reliable),"),
+        Bug("right", "is_writer, reliable)", "is_writer, read.reliable)"),
         Bug("due", "len(endpoint)), C(1, 1))", "len(endpoint)), C(0, 1))"),
         Bug(
             "matched",
-            "m.d.sync += self.matched.bit_select(endpoint, 1).eq(1)",
-            "m.d.sync += self.matched.bit_select(endpoint, 1).eq(transient)",
+            "self._joins.eq(1)",
+            "self._joins.eq(transient)",
         ),
-        Bug("unmatched", "with m.Elif(found):", "with m.Elif(0):"),
+        Bug("unmatched", "read.type & ~same.any()", "read.type & same.any()"),
         Bug("full", "with m.Elif(~found & self._places.full):", "with m.Elif(self._places.full):"),
         Bug(
             "lost",
@@ -504,7 +517,10 @@ class ManyListsSpec(_Tables):
 
     once = False
     quick, deep = 36, 50
-    scale = (*_Tables.scale, ("with m.If(step[:4] == 15):", "with m.If(step[:4] == 3):"))
+    scale = (
+        *_Tables.scale,
+        ("with m.If(step == 15 + READ_LATENCY):", "with m.If(step == 3 + READ_LATENCY):"),
+    )
     bugs = (Bug("distinct", "with m.Elif(~meta.known & arrived):", "with m.Elif(0):"),)
 
     def judge(self, m: Module) -> None:
@@ -526,7 +542,7 @@ class BoundsSpec(_Tables):
 
     quick, deep = 40, 80
     bugs = (
-        Bug("proceeds", "with m.If(step[:4] == 15):", "with m.If(step[:4] == 16):"),
+        Bug("proceeds", "with m.If(step == 15 + READ_LATENCY):", "with m.If(step[:4] == 16):"),
         Bug("swept", "with m.If(slot == peers.participants):", "with m.If(slot == 255):"),
     )
 
@@ -535,7 +551,7 @@ class BoundsSpec(_Tables):
         self.ports += [*cut.free, dut.any_alive, dut.any_matched, dut.any_heard, dut.any_endpoint]
         m.d.sync += dut.loads.eq(0)
         frames = self.assume(m, "i")
-        cut.contract(m)
+        cut.contract(m, frames.within)
         held = Signal()
         list_, sweep = Signal(range(LIST + 2)), Signal(range(SWEEP + 2))
         m.d.sync += [

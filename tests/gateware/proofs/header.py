@@ -1,13 +1,13 @@
-"""HeaderReader and HeaderWriter against a naive model: a count of the frame's octets, and a register for one of a header."""
+"""HeaderReader and EthernetTx against a naive model: a count of the frame's octets, and a register for one of a header."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from amaranth.hdl import Assert, Cover, Module, Mux, Signal
+from amaranth.hdl import Assert, Assume, Cover, Module, Mux, Signal
 
-from gateware.formal import Bug, Spec
-from roslet.gateware import header
+from gateware.formal import Bug, Spec, assume_steady
+from roslet.gateware import ethernet, header
 from roslet.wire.fields import OCTETS, Field
 
 FIELDS = (Field("kind", 0, 8), Field("port", 1, 16), Field("address", 3, 16, OCTETS))
@@ -20,10 +20,12 @@ READER = """
                 m.d.sync += at.eq(0)
         with m.Else():
             m.d.comb += i.ready.eq(1)"""
-"""What passes, in the reader; the writer has the same words."""
-WRITER = f"m.d.comb += [o.payload.eq(i.payload), {PASS}"
+"""What passes, in the reader."""
 
-HEADER = "m.d.comb += [o.valid.eq(i.valid), o.payload.data.eq(pick(header, at))]"
+VALID = "m.d.comb += o.valid.eq(i.valid)"
+INSERT = "m.d.comb += o.payload.data.eq(pick("
+THROUGH = "m.d.comb += [o.payload.eq(i.payload), i.ready.eq(o.ready)]"
+ON = "with m.Elif(at != HOP + len(own)):\n                m.d.sync += at.eq(at + 1)"
 
 
 class ReaderSpec(Spec):
@@ -78,39 +80,40 @@ class ReaderSpec(Spec):
 
 
 class WriterSpec(Spec):
-    """A frame gets its header, octet by octet, and passes behind it."""
+    """A frame gets our address and its type behind its destination, octet by octet, and passes otherwise."""
 
-    module = header
+    module = ethernet
     quick, deep = 20, 40
     bugs = (
-        Bug("o.steady", HEADER, HEADER.replace("(i.valid)", "(i.valid & i.payload.data[0])")),
-        Bug("o.bad_only_at_end", HEADER, HEADER.replace("]", ", o.payload.bad.eq(i.payload.bad)]")),
-        Bug("holds", HEADER, HEADER.replace("]", ", i.ready.eq(o.ready)]")),
-        Bug(
-            "header", "m.d.sync += at.eq(at + 1)\n        return", "m.d.sync += at.eq(at + 2)\n        return"
-        ),
-        Bug("passes", WRITER, WRITER.replace("i.payload)", "Cat(i.payload.data, i.payload.end, 0))")),
+        Bug("o.steady", VALID, VALID.replace("i.valid)", "i.valid & i.payload.data[0])")),
+        Bug("o.bad_only_at_end", INSERT, f"m.d.comb += o.payload.bad.eq(i.payload.bad); {INSERT}"),
+        Bug("holds", INSERT, f"m.d.comb += i.ready.eq(o.ready); {INSERT}"),
+        Bug("header", ON, ON.replace("at + 1", "at + 2")),
+        Bug("passes", THROUGH, THROUGH.replace("i.payload)", "Cat(i.payload.data, i.payload.end, 0))")),
     )
 
     def block(self) -> Any:
-        return self.gates.HeaderWriter(FIELDS, {"kind": 0xA5})
+        return self.gates.EthernetTx()
 
     def properties(self, m: Module) -> None:
         self.assume(m, "i")
         self.check(m, "o")
         i, o, meta = self.dut.i.stream, self.dut.o.stream, self.dut.i.meta
-        at = Signal(range(SIZE + 1))
-        octets = [0xA5, meta.port[8:], meta.port[:8], meta.address[:8], meta.address[8:]]
+        mac = self.dut.addresses.mac
+        at = Signal(range(15))
+        own = [*(mac.word_select(n, 8) for n in range(6)), meta.type[8:], meta.type[:8]]
         with m.If(o.valid & o.ready):
-            m.d.sync += at.eq(Mux(o.payload.end, 0, at + (at < SIZE)))
-        with m.If(at < SIZE):
+            m.d.sync += at.eq(Mux(o.payload.end, 0, at + (at < 14)))
+        assume_steady(m, mac)
+        m.d.comb += Assume(~i.valid | ~i.payload.end | (at >= 6), "destination")
+        with m.If((at >= 6) & (at < 14)):
             m.d.comb += Assert(~i.ready & (o.valid == i.valid), "holds")
         with m.Else():
             m.d.comb += [
                 Assert((o.valid == i.valid) & (o.ready == i.ready), "passes"),
                 Assert(o.payload.as_value() == i.payload.as_value(), "passes"),
             ]
-        for n, octet in enumerate(octets):
+        for n, octet in enumerate(own, 6):
             with m.If(o.valid & (at == n)):
                 m.d.comb += Assert((o.payload.data == octet) & ~o.payload.end, "header")
 

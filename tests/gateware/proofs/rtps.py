@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from amaranth.hdl import Assert, Assume, Cat, Const, Cover, Module, Mux, Signal, Value
 
 from gateware.formal import Bug, Spec, assume_steady
-from roslet.gateware.rtps import composer, outbox, parameters, queue, submessages, walker
+from roslet.gateware.rtps import composer, outbox, parameters, queue, submessages, tables, walker
 from roslet.gateware.rtps.rom import Op
 from roslet.gateware.rtps.tables import Local, OwnMap, PeerMap
 from roslet.wire.rtps.submessage import GAP
@@ -35,21 +35,17 @@ class QueueSpec(Spec):
     module = queue
     quick, deep = 13, 18
     bugs = (
-        Bug("o.steady", "with m.If(~o.valid | o.ready):", "with m.If(1):"),
+        Bug("o.steady", "with m.If(~o.valid):", "with m.If(1):"),
         Bug(
             "o.bad_only_at_end",
-            "item.data.eq(held), words.w_en.eq(~long)",
-            "item.data.eq(held), item.bad.eq(1), words.w_en.eq(1)",
+            "o.payload.bad.eq(~fetched & ~self.good)",
+            "o.payload.bad.eq(~self.good)",
         ),
-        Bug("octet", "item.data.eq(Cat(held, octet))", "item.data.eq(Cat(held[8:], octet, octet))"),
-        Bug("words", "Const(0, 2) - last", "last"),
-        Bug("verdict", "bad = i.payload.bad | long", "bad = long"),
-        Bug(
-            "kept",
-            "room = count != self._depth - SPARE",
-            "room = count != self._depth - SPARE - 1",
-        ),
-        Bug("known", "self.good.eq(~bad)", "self.good.eq(1)"),
+        Bug("octet", "held.word_select(at, 8)", "held.word_select(at & 1, 8)"),
+        Bug("words", "padding.eq(-at)", "padding.eq(at)"),
+        Bug("verdict", "bad = i.payload.bad | too_long", "bad = too_long"),
+        Bug("kept", "full.eq(count == self._depth)", "full.eq(count == self._depth - 1)"),
+        Bug("known", "o.payload.bad.eq(~fetched & ~self.good)", "o.payload.bad.eq(0)"),
     )
 
     def block(self) -> Any:
@@ -92,7 +88,7 @@ class QueueSpec(Spec):
 
 SKIPPED = """with m.If(left[-1] & ~to_end):
                     m.next = "{}"
-                with m.Elif(i.valid & i.payload.end):"""
+                with m.Elif(ended):"""
 
 
 class WalkerSpec(Spec):
@@ -115,7 +111,7 @@ class WalkerSpec(Spec):
             "o.payload.data.eq(word), o.payload.bad.eq(i.payload.bad | (word == 5)),",
         ),
         Bug("o.meta_steady", "self.o.meta.known.eq(is_known)", "self.o.meta.known.eq(i.valid)"),
-        Bug("length", "left = Signal(15)", "left = Signal(14)"),
+        Bug("length", "left, less = Signal(15), Signal(15)", "left, less = Signal(14), Signal(14)"),
         Bug("data", "o.payload.data.eq(word),", "o.payload.data.eq(word | 1),"),
         Bug("good", "o.payload.bad.eq(~self.good | missing)", "o.payload.bad.eq(~self.good)"),
         Bug("heard", "~o.payload.bad & is_known", "is_known"),
@@ -189,10 +185,10 @@ class SubmessagesSpec(Spec):
     """`user`: a message of the user's ends well only where the body does, and `word`: is made of its words. `over`: a
     body's end is not taken before discovery has taken its. `kept`: but
     for the scratch area, something is written only at a good end: nothing is kept of a datagram that ends badly. `taken`:
-    what comes is taken within some cycles, of all but a GAP, which may take one for each bit."""
+    what comes is taken within some cycles, of all but a GAP, which takes one more for each bit of its first word."""
 
     module = submessages
-    quick, deep = 27, 34
+    quick, deep = 27, 36
     bugs = (
         Bug("user.steady", "m.d.comb += i.ready.eq(user.ready)", "m.d.comb += i.ready.eq(1)"),
         Bug(
@@ -202,7 +198,7 @@ class SubmessagesSpec(Spec):
         ),
         Bug(
             "user.meta_steady",
-            "self.user.meta.reader.eq(info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8])",
+            "self.user.meta.reader.eq(local)",
             "self.user.meta.reader.eq(self.peers.data)",
         ),
         Bug(
@@ -227,15 +223,11 @@ class SubmessagesSpec(Spec):
             "with m.If(~i.payload.end):\n                    m.d.comb += i.ready.eq(self.discovery.stream.ready)",
             "with m.If(1):\n                    m.d.comb += i.ready.eq(self.discovery.stream.ready)",
         ),
-        Bug(
-            "kept",
-            '                with m.If(good):\n                    m.next = "WRITE LOW"\n',
-            '                with m.If(ended):\n                    m.next = "WRITE LOW"\n',
-        ),
+        Bug("kept", "with m.If(wrong | i.payload.bad):", "with m.If(wrong):"),
         Bug(
             "taken",
-            'with m.If(~meta.known):\n                    m.next = "FOUND"',
-            'with m.If(~meta.known):\n                    m.next = "FIND"',
+            'with m.If(~meta.known):\n                        m.next = "FOUND"',
+            'with m.If(~meta.known):\n                        m.next = "FIND"',
         ),
     )
 
@@ -254,14 +246,14 @@ class SubmessagesSpec(Spec):
         word = user.valid & ~user.payload.end
         scratch = dut.write.addr[4:] == peers._scratch >> 4
         m.d.comb += [
-            Assume(dut.i.meta.id != GAP, "no GAP"),
             Assert(~good | (ended & ~i.payload.bad), "user"),
             Assert(~word | (i.valid & ~i.payload.end & (user.payload.data == i.payload.data)), "word"),
             Assert(~rules.ended | ~(lists.within | dut.discovery.stream.valid), "over"),
             Assert(~dut.write.en | scratch | (ended & ~i.payload.bad), "kept"),
             Cover(dut.write.en & ~scratch, "written"),
         ]
-        waits(m, i, 15, user.ready & dut.discovery.stream.ready, "taken")
+        free = user.ready & dut.discovery.stream.ready & (dut.i.meta.id != GAP)
+        waits(m, i, 18, free, "taken")
 
 
 class ParametersSpec(Spec):
@@ -271,7 +263,7 @@ class ParametersSpec(Spec):
     written of it is there. `taken`: what comes is taken within some cycles, but for the end of what is read."""
 
     module = parameters
-    quick, deep = 17, 26
+    quick, deep = 20, 32
     bugs = (
         Bug("done", "self.done.eq(~i.payload.bad)", "self.done.eq(1)"),
         Bug(
@@ -279,23 +271,23 @@ class ParametersSpec(Spec):
             'with m.Elif(ended):\n                    m.next = "MALFORMED"',
             'with m.Elif(ended):\n                    m.next = "DONE"',
         ),
-        Bug("done", "left, at = Signal(15)", "left, at = Signal(2)"),
+        Bug("done", "v.at == length[2:]", "v.at[0] == length[2]"),
         Bug("stays", "i.ready.eq(self.proceed | i.payload.bad)", "i.ready.eq(1)"),
         Bug("told", "self.drop_malformed.eq(ended & ~i.payload.bad)", "self.drop_malformed.eq(0)"),
         Bug(
             "kept",
-            "keep(self._peers.scratch(at), word)",
-            "keep(self._peers.participant(Const(0, 1), at), word)",
+            "target = self._peers.scratch(",
+            "target = self._peers.participant(Signal(1), ",
         ),
         Bug(
             "quiet",
             "[self.done.eq(~i.payload.bad), ",
-            "[self.done.eq(~i.payload.bad), self.own.addr.eq(little), ",
+            "[self.done.eq(~i.payload.bad), self.own.addr.eq(v.little), ",
         ),
         Bug(
             "taken",
-            'with m.Elif(i.valid):\n                    m.next = "MALFORMED"',
-            'with m.Elif(i.valid):\n                    m.next = "PARAMETER"',
+            'with m.If(ended):\n                    m.next = "MALFORMED"',
+            'with m.If(ended):\n                    m.next = "PARAMETER"',
         ),
     )
 
@@ -332,7 +324,7 @@ class ParametersSpec(Spec):
         wrote, addresses = Signal(), Cat(dut.peers.addr, dut.own.addr, dut.write.addr, dut.write.data)
         m.d.sync += wrote.eq(dut.write.en)
         m.d.comb += [
-            Assert((i.valid & ~dut.done) | ~Cat(addresses, dut.write.en).any(), "quiet"),
+            Assert(((i.valid | rules.within) & ~dut.done) | ~Cat(addresses, dut.write.en).any(), "quiet"),
             Assert(~dut.done | ~wrote, "quiet"),
             Assert(~dut.done | (good & ((expected == beginning) | (expected == rest))), "done"),
             Assert(~held | (dut.done & (dut.read.as_value() == read) & (dut.same == same)), "stays"),
@@ -340,9 +332,9 @@ class ParametersSpec(Spec):
             Assert(~dut.drop_malformed | (rules.ended & good), "told"),
             Assert(~dut.write.en | (dut.write.addr[4:] == PeerMap(1, 1)._scratch >> 4), "kept"),
             Cover(dut.done & (expected == rest) & dut.read.refused, "refused"),
-            Cover(dut.write.en, "written"),
+            Cover(dut.write.en & (dut.write.addr[:4] != tables.LEASE), "written"),
         ]
-        waits(m, i, 6, ~dut.done | dut.proceed, "taken")
+        waits(m, i, 9, ~dut.done | dut.proceed, "taken")
 
 
 class OutboxSpec(Spec):
@@ -351,28 +343,23 @@ class OutboxSpec(Spec):
 
     module = outbox
     quick, deep = 15, 20
-    scale = (("added.eq(total + pair[:16] + carries[1])", "added.eq(0)"),)
+    scale = (("added.eq((Cat(C(1, 1), total) + Cat(carry, pair[:16]))[1:])", "added.eq(0)"),)
     bugs = (
-        Bug("o.steady", "o.valid.eq(~asking & found)", "o.valid.eq(~asking & found & ~lookup.mac[0])"),
+        Bug("o.steady", "o.valid.eq(found)", "o.valid.eq(found & ~lookup.mac[0])"),
         Bug(
             "o.bad_only_at_end",
-            "o.payload.end.eq(left == 0)",
-            "o.payload.bad.eq(left == 1), o.payload.end.eq(left == 0)",
+            "o.payload.end.eq(over)",
+            "o.payload.bad.eq(lane == 1), o.payload.end.eq(over)",
         ),
         Bug("o.meta_steady", "meta.source_port.eq(self.source_port)", "meta.source_port.eq(self.port)"),
-        Bug(
-            "length", "octets.eq(Cat(C(0, 2), read.data[16:30]))", "octets.eq(Cat(C(0, 1), read.data[16:30]))"
-        ),
-        Bug(
-            "where",
-            "write.addr.eq(begin), write.data.eq(self.ip)",
-            "write.addr.eq(begin), write.data.eq(self.ip + 1)",
-        ),
-        Bug("content", "m.d.sync += self.room.eq(0)", "m.d.sync += self.source_port.eq(0) if 0 else []"),
+        Bug("length", "meta.length.eq(Cat(C(0, 2), count))", "meta.length.eq(Cat(C(0, 1), count))"),
+        Bug("where", "[ip.eq(self.ip), ", "[ip.eq(self.ip + 1), "),
+        Bug("where", "meta.destination.eq(address)", "meta.destination.eq(ip)"),
+        Bug("content", "read.addr.eq(Cat(at, ~place))", "read.addr.eq(Cat(at, place))"),
     )
 
     def block(self) -> Any:
-        return self.gates.Outbox(12, 8, 2)
+        return self.gates.Outbox(12, 8, 1)
 
     def properties(self, m: Module) -> None:
         dut = self.dut
@@ -381,9 +368,6 @@ class OutboxSpec(Spec):
         assume_steady(m, dut.source_port)
         # Who writes
         written, number = Signal(3), Signal(3)
-        before = Signal()
-        ip, port = Signal(32), Signal(16)
-        m.d.sync += [ip.eq(dut.ip), port.eq(dut.port), before.eq(dut.busy | dut.finish)]
         with m.If(dut.finish):
             m.d.sync += [written.eq(0), number.eq(number + ~number.all())]
         with m.Elif(dut.push):
@@ -401,7 +385,6 @@ class OutboxSpec(Spec):
             Assume(~dut.push | (~dut.busy & (written < 3)), "writes within"),
             Assume(~dut.push | (written != 0) | dut.room, "begins with room"),
             Assume(~dut.finish | (~dut.busy & (dut.push | (written != 0))), "finishes what it began"),
-            Assume(~before | ((dut.ip == ip) & (dut.port == port)), "says where"),
             Assume(~lookup.done | lookup.valid, "answers"),
             Assume(~(lookup.found & lookup.failed), "one answer"),
         ]
@@ -452,8 +435,8 @@ class ComposerSpec(Spec):
     bugs = (
         Bug("count", "pushes.eq(in_message)", "pushes.eq(1)"),
         Bug("none_before", "[there.eq(0), coming.eq(0)]", "there.eq(0)"),
-        Bug("declared", "subject.words[:14]", "subject.words[1:14]"),
-        Bug("over", "(word != subject.words)", "(word != subject.words + 8)"),
+        Bug("declared", "added.eq(Cat(C(0, 2), words))", "added.eq(Cat(C(0, 1), words))"),
+        Bug("over", "(word != words)", "(word != words + 1)"),
     )
 
     def block(self) -> Any:
@@ -472,10 +455,14 @@ class ComposerSpec(Spec):
         with m.Elif(running):
             m.d.sync += [count.eq(pushed), cycles.eq(cycles + 1), running.eq(~dut.done)]
         needs = Mux(second, 1, 4 + words)
+        hidden = Signal(2)
+        m.d.sync += hidden.eq(Cat(dut.hide_own, dut.hide_peers))
         m.d.comb += [
             Assume((dut.at == 0) | second, "a template"),
             Assume(words <= 3, "a message that fits"),
             Assume(~dut.start | ~running, "one after another"),
+            Assume(~hidden[0] | (dut.own.data == 0), "hidden"),
+            Assume(~hidden[1] | (dut.peers.data == 0), "hidden"),
             Assert(~(running & dut.done) | (pushed == needs), "count"),
             Assert(running | (~dut.push & ~dut.done), "none_before"),
             Assert(

@@ -11,6 +11,7 @@ import pytest
 import pcap
 import peers as programs
 from gateware.words import Tables, WordBench, words
+from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.composer import Composer
 from roslet.gateware.rtps.rom import Op, Register, Rom
 from roslet.gateware.rtps.tables import Local, OwnMap, PeerMap
@@ -51,6 +52,8 @@ def compose(names: list[str], builtin: bool = False, kind: int = 0, size: int = 
     init = own.init(PREFIX, IP, 7410, 7411)
     sample = own.samples[1]
     init[sample : sample + 4] = [size, *words(TEXT)]
+    for at in (own.writer_address(LOCAL, 0), own.writer_address(kind % 2, 0, builtin=True)):
+        init[at : at + 4] = [LAST & 0xFFFFFFFF, LAST >> 32, 0, COUNT]
     theirs = [0] * peers.depth
     at = peers._participants + 16 * SLOT
     theirs[at : at + 3] = words(THEIRS)
@@ -61,14 +64,13 @@ def compose(names: list[str], builtin: bool = False, kind: int = 0, size: int = 
     found: dict[str, Composed] = {}
 
     async def process(ctx: Any) -> None:
-        values = {"first": FIRST, "last": LAST, "number": NUMBER}
+        values = {"first": FIRST, "number": NUMBER}
         registers = {name: value & 0xFFFFFFFF for name, value in values.items()}
         registers |= {f"{name}_high": value >> 32 for name, value in values.items()}
-        registers |= {"count": COUNT, "bitmap": BITMAP, "encapsulation": 0x0100}
         assert {name.name.lower() for name in Register} == set(registers)
         known = {register.value: register.name.lower() for register in Register}
-        subject = {"builtin": builtin, "kind": kind, "slot": SLOT, "endpoint": ENDPOINT, "entity": LOCAL + 1}
-        ctx.set(block.subject, {**subject, "sample": sample, "words": size})
+        subject = {"builtin": builtin, "kind": kind, "slot": SLOT, "endpoint": ENDPOINT, "local": LOCAL}
+        ctx.set(block.subject, {**subject, "sample": sample, "words": size, "padding": 0, "missing": BITMAP})
         for name in names:
             ctx.set(block.at, rom.start[name])
             ctx.set(block.start, 1)
@@ -150,7 +152,7 @@ def test_the_announcement_says_who_and_where_we_are(composed: dict[str, Composed
     (data,) = read(composed["participant"].octets)
     assert (data.writer_id, data.sequence, data.flags) == (
         guid.ENTITYID_SPDP_BUILTIN_PARTICIPANT_WRITER,
-        NUMBER,
+        1,
         FLAG_D,
     )
     said = participant_data.parse(data.payload)
@@ -216,7 +218,10 @@ def test_heartbeats_acknacks_and_gaps_have_their_numbers(composed: dict[str, Com
     assert ack.state.numbers() == [WANTED, WANTED + 2, WANTED + 31]
     (gap,) = directed(composed["gap"].octets)
     assert isinstance(gap, Gap) and isinstance(ack, AckNack)
-    assert (gap.reader_id, gap.writer_id, gap.start) == (KEY, b"\0\0\2\3", NUMBER)
+    asked_from = WANTED >> 32  # the word of a reader's proxy that a writer's has for its higher one
+    assert tables.ASK_FROM == tables.NEXT_HI
+    start = NUMBER >> 32 << 32 | asked_from
+    assert (gap.reader_id, gap.writer_id, gap.start) == (KEY, b"\0\0\2\3", start)
     assert (gap.gaps.base, gap.gaps.bits) == (FIRST, 0)
 
 

@@ -233,14 +233,14 @@ def test_of_locators_the_first_in_our_subnet_is_taken_else_the_first(
 def test_what_is_said_is_read_and_what_is_not_has_its_default(e: str) -> None:
     async def script(r: Reader) -> None:
         heard = await r.hear(hand.payload(e=e), PARTICIPANT)
-        assert (heard.read.guid, heard.read.meta, heard.read.lease, heard.read.refused) == (0, 0, 100, 0)
+        assert (heard.read.guid, heard.read.meta, heard.scratch[7], heard.read.refused) == (0, 0, 100, 0)
         said = hand.payload(
             hand.parameter(0x50, SENDER + hand.PARTICIPANT, e),
             hand.parameter(2, struct.pack(e + "iI", 7, 1 << 31), e),
             e=e,
         )
         heard = await r.hear(said, PARTICIPANT)
-        assert (heard.read.guid, heard.read.lease) == (1, 7)
+        assert (heard.read.guid, heard.scratch[7]) == (1, 7)
         assert heard.scratch[:3] == words(SENDER)
         for kind, reliable in ((PUBLICATION, 1), (SUBSCRIPTION, 0)):
             heard = await r.hear(hand.payload(e=e), kind)
@@ -256,7 +256,7 @@ def test_what_is_said_is_read_and_what_is_not_has_its_default(e: str) -> None:
                 )
                 assert heard.read.durability == value
         heard = await r.hear(hand.payload(hand.parameter(0x5A, SENDER + hand.WRITER, e), e=e))
-        assert (heard.read.guid, heard.read.entity) == (1, words(hand.WRITER)[0])
+        assert (heard.read.guid, heard.scratch[15]) == (1, words(hand.WRITER)[0])
         # A list without a word about what is gone.
         assert (await r.hear(b"")).read.guid == 0
 

@@ -46,7 +46,7 @@ class Finder(wiring.Component):
         m.d.comb += self.found.eq(found)
         with m.FSM():
             with m.State("IDLE"):
-                m.d.sync += found.eq(0)
+                m.d.sync += [found.eq(0), self.endpoint.eq(0)]
                 with m.If(self.start):
                     m.next = "SCAN"
             port = self.peers
@@ -95,12 +95,12 @@ def test_the_one_with_this_key_of_this_participant_and_of_this_kind_is_found_if_
                 await ctx.tick()
                 cycles += 1
             right = [n for n, one in enumerate(table) if one[:3] == (key, slot, writer) and matched >> n & 1]
-            equal = [n for n, one in enumerate(table) if one[0] == key and matched >> n & 1]
+            last = right[0] if right else many - 1
             assert ctx.get(dut.found) == bool(right)
             if right:
                 assert ctx.get(dut.endpoint) == right[0]
                 assert ctx.get(dut.info) == theirs[peers._endpoints + 8 * right[0] + 1]
-            assert cycles <= many + 4 + 6 * len(equal)
+            assert cycles == last + 1 + 3 * (matched & (2 << last) - 1).bit_count()
             await ctx.tick()
 
     bench.drive(ask)

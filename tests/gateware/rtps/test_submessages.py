@@ -201,6 +201,7 @@ INVALID = [
     hand.gap(W, 1, hand.number_set(5, 0xFFFFFFFF, ())),
     hand.acknack(hand.READER, W, hand.number_set(5, 257, (0,) * 9), 1),
     hand.acknack(hand.READER, W, hand.number_set(5, 0x80000001, ()), 1),
+    hand.acknack(hand.READER, W, hand.number_set(-1, 0, ()), 1),
 ]
 
 

@@ -9,6 +9,7 @@ import pytest
 from amaranth.hdl import Const, Module, Signal, Value
 from amaranth.sim import Simulator
 
+from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.tables import Local, OwnMap, PeerMap
 
 
@@ -72,8 +73,10 @@ def test_our_own_words_have_places_of_their_own() -> None:
     assert got == [own.text_address(r, t, n) + word for r, t, n, word in words]
     places = [
         *got,
-        *(own.own(word) for word in range(16)),
-        *evaluate([own.writer(Const(n, n), word) for n in range(2) for word in range(4)]),
+        *(own.own(word) for word in range(tables.OWN_WORDS)),
+        *evaluate(
+            [own.writer(Const(n, n), word, b) for b in range(2) for n in range(2) for word in range(4)]
+        ),
         *(
             at
             for n, one in enumerate(writers)

@@ -7,6 +7,7 @@ from collections import Counter
 from typing import Any
 
 import pytest
+from amaranth.hdl import ResetInserter, Signal
 from amaranth.sim import Simulator
 
 from roslet.gateware.rtps import tables
@@ -17,18 +18,20 @@ PEERS = PeerMap(participants=3, endpoints=5)
 BUILTINS = PEERS.participants * tables.BUILTINS
 USER = 1 << (PEERS.proxy_bits - 1)
 PROXIES = [*range(BUILTINS), *(USER | n for n in range(PEERS.endpoints))]
-# Cycles in which each proxy is looked at, and stands at the port.
-ROUND = len(PROXIES) + 2
+# Cycles in which each place is looked at.
+ROUND = 3 * 32
 
 
 class Bench:
-    """Turns among PEERS, all of whom are there unless told otherwise; `jobs` are those that were taken."""
+    """Turns among peers, all of whom are there unless told otherwise; `jobs` are those that were taken."""
 
-    def __init__(self, pause: int = 0) -> None:
-        self.dut = Turns(PEERS)
+    def __init__(self, pause: int = 0, peers: PeerMap = PEERS) -> None:
+        self.peers = peers
+        self.dut = Turns(peers)
         self.pause = pause
         self.jobs: list[dict[str, int]] = []
-        self.simulator = Simulator(self.dut)
+        self.reset = Signal()
+        self.simulator = Simulator(ResetInserter(self.reset)(self.dut))
         self.simulator.add_clock(1e-8)
         self.simulator.add_testbench(self._take, background=True)
 
@@ -47,8 +50,9 @@ class Bench:
 
     def run(self, test: Any) -> None:
         async def whole(ctx: Any) -> None:
-            ctx.set(self.dut.alive, (1 << PEERS.participants) - 1)
-            ctx.set(self.dut.matched, (1 << PEERS.endpoints) - 1)
+            ctx.set(self.dut.alive, (1 << self.peers.participants) - 1)
+            ctx.set(self.dut.matched, (1 << self.peers.endpoints) - 1)
+            await ctx.tick().repeat(ROUND)
             await test(ctx)
 
         self.simulator.add_testbench(whole)
@@ -147,6 +151,41 @@ def test_a_sweep_visits_each_once() -> None:
         await ctx.tick().repeat(10 * ROUND)
         there = [proxy for proxy in PROXIES if not 2 * tables.BUILTINS <= proxy < USER]
         assert bench.served() == {(proxy, 0): 1 for proxy in there}
+
+    bench.run(test)
+
+
+@pytest.mark.parametrize(("participants", "endpoints"), [(4, 8), (8, 16), (1, 1), (1, 40), (5, 2)])
+def test_a_sweep_visits_each_once_however_many_there_are(participants: int, endpoints: int) -> None:
+    peers = PeerMap(participants, endpoints)
+    bench = Bench(peers=peers)
+
+    async def test(ctx: Any) -> None:
+        await ctx.tick().repeat(3 * 128)
+        await bench.pulse(ctx, sweep=1)
+        await ctx.tick().repeat(3 * 3 * 128)
+        user = 1 << (peers.proxy_bits - 1)
+        there = [*range(tables.BUILTINS * participants), *(user | n for n in range(endpoints))]
+        found = Counter(job["user"] * user | job["index"] for job in bench.jobs)
+        assert found == dict.fromkeys(there, 1)
+
+    bench.run(test)
+
+
+def test_what_was_remembered_is_forgotten_by_a_reset() -> None:
+    bench = Bench(pause=10 * ROUND)
+
+    async def test(ctx: Any) -> None:
+        for proxy in PROXIES:
+            await bench.due(ctx, proxy)
+            await ctx.tick().repeat(3)
+        await bench.pulse(ctx, greet=1)
+        ctx.set(bench.reset, 1)
+        await ctx.tick().repeat(3)
+        ctx.set(bench.reset, 0)
+        for _ in range(3 * ROUND):
+            await ctx.tick()
+            assert not ctx.get(bench.dut.valid)
 
     bench.run(test)
 

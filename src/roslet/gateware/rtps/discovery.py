@@ -29,8 +29,9 @@ class Discovery(wiring.Component):
 
     Ports: `i`, parameter lists (`Submessages`); `alive` and `matched`, a bit for each participant and user proxy there is;
     `peers`, `own`, read ports, and `write`; `addresses`, `group_port`, `domain`, ours; `heard` with `heard_slot`, a sign of
-    life; `tick`, high for a cycle each second; `hold` and `idle`, of the walker, which waits while leases are looked at;
-    `due`, something must be sent for a proxy; `greet` with `greet_slot`, this participant must hear of us, as it is new.
+    life, for a cycle in which no list is done; `tick`, high for a cycle each second; `hold` and `idle`, of the walker, which
+    waits while leases are looked at; `due`, something must be sent for a proxy; `greet` with `greet_slot`, this participant
+    must hear of us, as it is new.
 
     - A participant that announces itself has the first free slot, with proxies of its discovery endpoints, from which all
       is wanted and to which all is sent. Its next announcements, in other datagrams, move it. It goes, and its endpoints
@@ -78,29 +79,40 @@ class Discovery(wiring.Component):
         read, meta = parameters.read, self.i.meta
         is_participant = meta.kind == ports.PARTICIPANTS
 
+        # Who comes and goes, and gives a sign of life, or is silent again
+        self._place = Signal(range(peers.endpoints))
+        self._joins, self._parts, self._comes, self._goes, silent = (Signal() for _ in range(5))
+        heard, who = Signal(peers.participants), Signal(peers.slot_bits)
         # Whom it is about
-        self._slot = slot = Signal(8)
+        self._slot = slot = Signal(range(peers.participants + 1))
         self._endpoint, self._found = Signal(range(peers.endpoints)), Signal()
         self._entity, info = Signal(32), Signal(32)
-        self._step = step = Signal(range(max(16, peers.endpoints + READ_LATENCY)))
-        addressed = Signal.like(step)
-        self._before = before = Signal.like(
-            step
-        )  # what the memory gives now; `addressed`, what it gives next
-        heard = Signal(peers.participants)
+        self._step = step = Signal(range(max(16, peers.endpoints) + READ_LATENCY))
+        self._counts = counts = Signal()  # the step grows; else it is 0
+        # What the memory gives next, and now
+        addressed, before = Signal.like(step), Signal.like(step)
+        self._before = before
         ticked, sweeping = Signal(), Signal()
         arrived = Signal()  # in this datagram somebody, who is not known by its walker yet
         with m.If(self.idle):
             m.d.sync += arrived.eq(0)
         with m.If(self.greet):
             m.d.sync += arrived.eq(1)
-        m.d.sync += [addressed.eq(step), before.eq(addressed)]
+        m.d.sync += [step.eq(step + 1), addressed.eq(step), before.eq(addressed)]
+        with m.If(~counts):
+            m.d.sync += step.eq(0)
         # Where somebody new may go; neither changes while a list is dealt with, until it has been looked at
         self._slots, self._places = _Room(m, self.alive), _Room(m, self.matched)
         with m.If(self.tick):
             m.d.sync += ticked.eq(1)
-        with m.If(self.heard):
-            m.d.sync += heard.bit_select(self.heard_slot, 1).eq(1)
+        m.d.comb += who.eq(Mux(self.heard, self.heard_slot, slot))
+        for bits, number, rise, fall in (
+            (self.matched, self._place, self._joins, self._parts),
+            (self.alive, slot, self._comes, self._goes),
+            (heard, who, self.heard | self._comes, silent),
+        ):
+            with m.If(rise | fall):
+                m.d.sync += bits.bit_select(number, 1).eq(rise)
         m.d.comb += [
             parameters.addresses.eq(self.addresses),
             parameters.group_port.eq(self.group_port),
@@ -109,27 +121,20 @@ class Discovery(wiring.Component):
             parameters.own.data.eq(self.own.data),
             parameters.peers.data.eq(self.peers.data),
             self.greet_slot.eq(slot),
+            self._place.eq(self._endpoint),
         ]
         # Our own use of the memories, by turns with that of the parameters
         self._address, self._own_address = Signal(peers.address_bits), Signal(self._own.address_bits)
-        self._put = put = WriteSignature(peers.address_bits).create()
         m.d.comb += [
             self.peers.addr.eq(self._address | parameters.peers.addr),
             self.own.addr.eq(self._own_address | parameters.own.addr),
-            self.write.en.eq(put.en | parameters.write.en),
-            self.write.addr.eq(put.addr | parameters.write.addr),
-            self.write.data.eq(put.data | parameters.write.data),
         ]
+        self._writing(m)
 
         with m.FSM() as fsm:
             m.d.comb += self.hold.eq((fsm.ongoing("IDLE") & ticked) | sweeping)
             with m.State("IDLE"):
-                m.d.sync += [
-                    self._found.eq(0),
-                    step.eq(0),
-                    slot.eq(meta.slot),
-                    self._entity.eq(read.entity),
-                ]
+                m.d.sync += [self._found.eq(0), slot.eq(meta.slot)]
                 with m.If(parameters.done):  # then nobody else asks, whatever follows
                     m.d.comb += self._address.eq(peers.scratch(tables.SCRATCH_ENTITY))
                 with m.If(ticked & self.idle):
@@ -142,16 +147,16 @@ class Discovery(wiring.Component):
             with m.State("PROCEED"):
                 m.d.comb += parameters.proceed.eq(1)
                 m.next = "IDLE"
-            self._participant(m, heard, arrived)
+            self._participant(m, arrived)
             with m.State("KEY"):
                 m.next = "ENTITY"
             with m.State("ENTITY"):
+                m.d.sync += self._endpoint.eq(0)
                 m.next = "SCAN"
-                with m.If(~read.guid):
-                    m.d.sync += self._entity.eq(self.peers.data)
-                    with m.If(~(meta.gone & meta.has_key)):
-                        m.d.comb += self.drop_incomplete.eq(1)
-                        m.next = "PROCEED"
+                m.d.sync += self._entity.eq(self.peers.data)
+                with m.If(~read.guid & ~(meta.gone & meta.has_key)):
+                    m.d.comb += self.drop_incomplete.eq(1)
+                    m.next = "PROCEED"
             find_endpoint(
                 m,
                 peers,
@@ -159,7 +164,7 @@ class Discovery(wiring.Component):
                 self.peers.data,
                 self.matched,
                 self._entity,
-                meta.slot,
+                meta.slot[: len(slot)],
                 meta.kind == ports.PUBLICATIONS,
                 self._endpoint,
                 info,
@@ -170,7 +175,6 @@ class Discovery(wiring.Component):
             # -- who is silent
             with m.State("SWEEP"):
                 m.d.comb += self._address.eq(peers.participant(slot, tables.LEASE))
-                m.d.sync += step.eq(0)
                 with m.If(slot == peers.participants):
                     m.d.sync += sweeping.eq(0)
                     m.next = "IDLE"
@@ -184,24 +188,24 @@ class Discovery(wiring.Component):
             with m.State("LEASE"):
                 m.next = "LEFT"
                 with m.If(heard.bit_select(slot, 1)):
-                    m.d.sync += [heard.bit_select(slot, 1).eq(0), slot.eq(slot + 1)]
-                    self._write(m, peers.participant(slot, tables.LEFT), self.peers.data)
+                    m.d.comb += silent.eq(1)
+                    m.d.sync += slot.eq(slot + 1)
+                    self._write(m, peers.participant(slot, tables.LEFT), self._passes)
                     m.next = "SWEEP"
             with m.State("LEFT"):
-                left = self.peers.data[:17]
                 m.next = "REMOVE"
-                with m.If(left != 0):
-                    self._write(m, peers.participant(slot, tables.LEFT), left - 1)
+                with m.If(~self.peers.data[tables.LEASE_BITS]):  # it was not 0 before
+                    self._write(m, peers.participant(slot, tables.LEFT), self._lessens)
                     m.d.sync += slot.eq(slot + 1)
                     m.next = "SWEEP"
             with m.State("REMOVE"):  # the participant, and each of its endpoints
-                m.d.comb += self._address.eq(peers.endpoint(step, tables.INFO))
-                m.d.sync += [step.eq(step + 1), self.alive.bit_select(slot, 1).eq(0)]
-                with m.If(
-                    (step >= READ_LATENCY)
-                    & (self.peers.data[tables.INFO_SLOT : tables.INFO_SLOT + 8] == slot)
-                ):
-                    m.d.sync += self.matched.bit_select(before, 1).eq(0)
+                m.d.comb += [counts.eq(1), self._address.eq(peers.endpoint(step, tables.INFO))]
+                its = self.peers.data[tables.INFO_SLOT : tables.INFO_SLOT + len(slot)] == slot
+                m.d.comb += [
+                    self._goes.eq(1),
+                    self._place.eq(before),
+                    self._parts.eq((step >= READ_LATENCY) & its),
+                ]
                 with m.If(step == peers.endpoints + READ_LATENCY - 1):
                     m.next = "PROCEED"
                     with m.If(sweeping):
@@ -209,18 +213,51 @@ class Discovery(wiring.Component):
                         m.next = "SWEEP"
         return m
 
-    def _write(self, m: Module, target: Value, value: Value | int) -> None:
-        m.d.comb += [self._put.en.eq(1), self._put.addr.eq(target), self._put.data.eq(value)]
+    def _writing(self, m: Module) -> None:
+        """What is written, in the cycle after: registers of which those are zero that are not meant."""
+        given, kept = self.peers.data, self._parameters.write
+        # What was read, with the group beside a port; a second less than was read; what is known of an endpoint; and what
+        # is computed: of our own word nothing, 1, all before that is kept, or everything more.
+        self._target = Signal(len(self.write.addr))
+        self._writes, self._passes, self._lessens, self._computes = (Signal() for _ in range(4))
+        self._beside, self._in_group = Signal(18), Signal()
+        self._one, self._before_all, self._everything = (Signal() for _ in range(3))
+        one, before_all, everything = self._one, self._before_all, self._everything
+        middle = MAX_HISTORY.bit_length() - 1
+        more = Cat(
+            one | everything,
+            everything.replicate(middle - 1),
+            (before_all | everything).replicate(31 - middle),
+            before_all,
+        )
+        en, target, beside = Signal(), Signal.like(self._target), Signal.like(self._beside)
+        passed, lessened, computed = Signal(32), Signal(tables.LEASE_BITS + 1), Signal(32)
+        m.d.sync += [en.eq(self._writes), target.eq(self._target), beside.eq(self._beside)]
+        for register, value, meant in (
+            (passed, given | self._in_group << tables.PORT_GROUP, self._passes),
+            (lessened, given[: tables.LEASE_BITS + 1] - 1, self._lessens),
+            (computed, self.own.data + more, self._computes),
+        ):
+            m.d.sync += register.eq(value)
+            with m.If(~meant):
+                m.d.sync += register.eq(0)
+        m.d.comb += [
+            self.write.en.eq(en | kept.en),
+            self.write.addr.eq(target | kept.addr),
+            self.write.data.eq((passed | computed | kept.data) | (lessened | beside)),
+        ]
 
-    def _participant(self, m: Module, heard: Signal, arrived: Value) -> None:
-        """An announcement, or a farewell. `heard`: who has given a sign of life."""
+    def _write(self, m: Module, target: Value, *what: Signal) -> None:
+        """A word, of what is `beside` and these."""
+        m.d.comb += [self._writes.eq(1), self._target.eq(target), *(one.eq(1) for one in what)]
+
+    def _participant(self, m: Module, arrived: Value) -> None:
+        """An announcement, or a farewell."""
         peers, meta, read = self._peers, self.i.meta, self._parameters.read
-        slot, step, before = self._slot, self._step, self._before
+        slot, step, counts, before = self._slot, self._step, self._counts, self._before
         fresh = Signal()
-        lease = Signal(len(read.lease) + 1)  # with a second more
-        m.d.sync += lease.eq(read.lease + 1)
         with m.State("PARTICIPANT"):
-            m.d.sync += [step.eq(0), fresh.eq(~meta.known)]
+            m.d.sync += fresh.eq(~meta.known)
             m.next = "PROCEED"
             with m.If(meta.gone), m.If(meta.known):
                 m.next = "REMOVE"
@@ -238,40 +275,38 @@ class Discovery(wiring.Component):
                     m.d.sync += slot.eq(self._slots.free)
         with m.State("COPY"):  # the scratch area, behind what is read
             source = Signal(4)
-            m.d.comb += source.eq(step)
+            m.d.comb += [counts.eq(1), source.eq(step)]
             with m.If(~read.user & ((step == tables.USER_IP) | (step == tables.USER_PORT))):
                 m.d.comb += source.eq(step - tables.USER_IP + tables.META_IP)
             m.d.comb += self._address.eq(peers.scratch(source))
-            m.d.sync += step.eq(step + 1)
+            near, listens = self._parameters.near, self._parameters.listens
             with m.If(step >= READ_LATENCY):
-                near, listens = self._parameters.near, self._parameters.listens
-                beside = Mux(before == tables.USER_PORT, Cat(near & listens, near), 0)
-                value = self.peers.data | beside << tables.PORT_GROUP
-                self._write(m, peers.participant(slot, before), Mux(before >= tables.LEASE, lease, value))
-            with m.If(step == tables.LEFT + READ_LATENCY):
-                m.d.sync += [
-                    step.eq(0),
-                    self.alive.bit_select(slot, 1).eq(1),
-                    heard.bit_select(slot, 1).eq(1),
-                ]
+                self._write(m, peers.participant(slot, before), self._passes)
+            with m.If(before == tables.USER_PORT):
+                m.d.comb += self._beside[tables.PORT_GROUP :].eq(Cat(near & listens, near))
+            with m.If(
+                step == tables.LEASE + READ_LATENCY
+            ):  # as it was heard, the next sweep writes what is left
+                m.d.comb += [counts.eq(0), self._comes.eq(1)]
                 m.next = "PROCEED"
                 with m.If(fresh):
                     m.d.comb += self.greet.eq(1)
                     m.next = "BUILTINS"
         with m.State("BUILTINS"):  # the last four words of each proxy
-            kind, word = step[2:4], Cat(step[:2], C(1, 1))
-            value = Mux(
-                kind[1],
-                word == tables.NEXT_LO,
-                Mux(word == tables.ASK_TO, tables.EVERYTHING, word == tables.ASK_FROM),
-            )
-            self._write(m, peers.builtin(slot, kind, word), value)
+            of_writer, word = before[3], Cat(before[:2], C(1, 1))
             m.d.comb += [
-                self.due.en.eq(step[:2] == 3),
-                self.due.proxy.eq(Cat(kind, slot)[: len(self.due.proxy) - 1]),
+                counts.eq(1),
+                self._own_address.eq(self._own.own(tables.ZERO)),
+                self._one.eq(Mux(of_writer, word == tables.NEXT_LO, word == tables.ASK_FROM)),
+                self._everything.eq(~of_writer & (word == tables.ASK_TO)),
             ]
-            m.d.sync += step.eq(step + 1)
-            with m.If(step[:4] == 15):
+            with m.If(step >= READ_LATENCY):
+                self._write(m, peers.builtin(slot, before[2:4], word), self._computes)
+                m.d.comb += [
+                    self.due.en.eq(before[:2] == 3),
+                    self.due.proxy.eq(Cat(before[2:4], slot)[: len(self.due.proxy) - 1]),
+                ]
+            with m.If(step == 15 + READ_LATENCY):
                 m.next = "PROCEED"
 
     def _match(self, m: Module) -> None:
@@ -308,7 +343,6 @@ class Discovery(wiring.Component):
         transient = Signal()  # it gets, or gives, what was there before it
         reliable = Signal()
         with m.State("ENDPOINT"):
-            m.d.sync += step.eq(0)
             for n in reversed(range(len(same))):
                 with m.If(same[n]):
                     ours = [table[n] if n < len(table) else None for table in (own.writers, own.readers)]
@@ -325,20 +359,19 @@ class Discovery(wiring.Component):
                         agreed.eq(agree[n]),
                     ]
             m.next = "PROCEED"
-            with m.If(meta.gone), m.If(found):
-                m.d.sync += self.matched.bit_select(endpoint, 1).eq(0)
+            m.d.comb += self._parts.eq(
+                found & (meta.gone | (read.guid & read.topic & read.type & ~same.any()))
+            )
+            with m.If(meta.gone):
+                pass
             with m.Elif(~read.guid | ~read.topic | ~read.type):
                 m.d.comb += self.drop_incomplete.eq(1)
             with m.Elif(same.any()):
                 m.next = "MATCH"
-            with m.Elif(found):
-                m.d.sync += self.matched.bit_select(endpoint, 1).eq(0)
         with m.State("MATCH"):
             m.next = "PROCEED"
             with m.If(~agreed):
-                m.d.comb += self.drop_qos.eq(1)
-                with m.If(found):
-                    m.d.sync += self.matched.bit_select(endpoint, 1).eq(0)
+                m.d.comb += [self.drop_qos.eq(1), self._parts.eq(found)]
             with m.Elif(~found & self._places.full):
                 m.d.comb += self.drop_full.eq(1)
             with m.Else():
@@ -346,35 +379,38 @@ class Discovery(wiring.Component):
                 with m.If(~found):
                     m.d.sync += endpoint.eq(self._places.free)
         with m.State("PROXY"):  # behind what is read
-            last = self.own.data
-            m.d.comb += self._own_address.eq(own.writer(local, tables.WRITER_LAST))
+            # Before all that is kept, where it gets what was before it: numbers are compared by their difference. Of a
+            # writer the first that is wanted is 1, or any.
+            last = own.writer(local, tables.WRITER_LAST)
+            m.d.comb += [
+                self._counts.eq(1),
+                self._own_address.eq(Mux(is_writer, own.own(tables.ZERO), last)),
+            ]
+            with m.If(is_writer):
+                m.d.comb += self._one.eq(transient & (before[:2] == tables.NEXT_LO & 3))
+            with m.Elif(before[:2] != tables.ASK_TO & 3):
+                m.d.comb += [self._one.eq(~transient), self._before_all.eq(transient)]
             where = Mux(step[0], tables.USER_PORT, tables.USER_IP)  # for IP, 2, and PORT, 3
-            m.d.comb += self._address.eq(Mux(read.user, peers.scratch(where), peers.participant(slot, where)))
-            # Before all that is kept, where it gets what was before it: numbers are compared by their difference.
-            first = Signal(32)
+            its = Mux(read.user, peers.scratch(where), peers.participant(slot, where))
+            m.d.comb += self._address.eq(Mux(step[1], its, peers.scratch(tables.SCRATCH_ENTITY)))
             near = Mux(read.user, self._parameters.near, self.peers.data[tables.PORT_NEAR])
             group = self._parameters.listens & near
-            m.d.sync += first.eq(last + Mux(transient, C(-MAX_HISTORY, 32), C(1, 32)))
-            words = [
-                self._entity,
-                Cat(slot, local, C(0, 8 - len(local)), is_writer, reliable),
-                self.peers.data,
-                self.peers.data | group << tables.PORT_GROUP,
-                Mux(is_writer, transient, first),  # NEXT_LO, ACKED
-                Mux(is_writer, 0, first),  # NEXT_HI, ASK_FROM
-                Mux(is_writer, 0, last),  # LAST, ASK_TO
-                Mux(is_writer, 0, first),  # START
-            ]
-            with m.If(step >= READ_LATENCY), m.Switch(before[:3]):
-                for n, value in enumerate(words):
-                    with m.Case(n):
-                        self._write(m, peers.endpoint(endpoint, n), value)
-            m.d.sync += step.eq(step + 1)
+            with m.If(step >= READ_LATENCY):
+                self._write(m, peers.endpoint(endpoint, before[:3]))
+                m.d.comb += self._computes.eq(before[2])
+                with m.If(before[:3] == tables.INFO):
+                    of_ours = Cat(local, C(0, 8 - len(local)), is_writer, reliable)
+                    m.d.comb += self._beside.eq(Cat(slot, C(0, 8 - len(slot)), of_ours))
+                with m.Elif(~before[2]):
+                    m.d.comb += [
+                        self._passes.eq(1),
+                        self._in_group.eq((before[0] == tables.PORT & 1) & group),
+                    ]
             with m.If((step == tables.PORT + READ_LATENCY) & found):
                 m.next = "PROCEED"  # it has only moved
-            with m.If(step == len(words) - 1 + READ_LATENCY):
-                m.d.sync += self.matched.bit_select(endpoint, 1).eq(1)
+            with m.If(step == tables.PROXY - 1 + READ_LATENCY):
                 m.d.comb += [
+                    self._joins.eq(1),
                     self.due.en.eq(1),
                     self.due.proxy.eq(Cat(endpoint, C(0, len(self.due.proxy) - 1 - len(endpoint)), C(1, 1))),
                 ]

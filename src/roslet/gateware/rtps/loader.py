@@ -17,8 +17,9 @@ Store = tuple[int, int, bool]
 class Loader(wiring.Component):
     """Makes the stores of a program, in order, once; from when `enable` is high on.
 
-    Ports: `index`, which word is wanted, and `word`, that word, in the next cycle or the one behind it; `name_words`;
-    `write`; `done`, high when all is written, until the next reset. A store takes 4 cycles.
+    Ports: `index`, which word is wanted, and `word`, that word, in the next cycle or the one behind it, and zero from the
+    cycle after `done` on, as `write.data` is no other; `name_words`; `write`; `done`, high when all is written, until the
+    next reset. A store takes 4 cycles.
     """
 
     def __init__(self, program: Sequence[Store], words: int, address_bits: int, name_bits: int) -> None:
@@ -48,7 +49,7 @@ class Loader(wiring.Component):
         at = Signal(range(len(self._program)))
         address = Signal.like(self.write.addr)
         entry = read.data
-        m.d.comb += [read.addr.eq(at), self.index.eq(entry.index)]
+        m.d.comb += [read.addr.eq(at), self.index.eq(entry.index), self.write.data.eq(self.word)]
         m.d.sync += address.eq(entry.address)
         with m.If(entry.moved):
             m.d.sync += address.eq(entry.address + self.name_words)
@@ -60,7 +61,7 @@ class Loader(wiring.Component):
             with m.State("WORD"):
                 m.next = "WRITE"
             with m.State("WRITE"):
-                m.d.comb += [self.write.en.eq(1), self.write.addr.eq(address), self.write.data.eq(self.word)]
+                m.d.comb += [self.write.en.eq(1), self.write.addr.eq(address)]
                 m.d.sync += at.eq(at + 1)
                 m.next = "WAIT"
                 with m.If(at == len(self._program) - 1):

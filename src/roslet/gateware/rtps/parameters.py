@@ -6,17 +6,15 @@ of `discovery`.
 
 from __future__ import annotations
 
-import enum
-from collections.abc import Callable
+from collections.abc import Mapping
 
-from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
-from amaranth.lib import data, wiring
+from amaranth.hdl import Cat, Module, Mux, Signal, Value
+from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out
 
-from roslet.gateware.compare import below
 from roslet.gateware.meta import ADDRESSES
 from roslet.gateware.rtps import ports, tables
-from roslet.gateware.rtps.ports import DISCOVERY, READ_LATENCY, ReadSignature, WriteSignature, exchanged
+from roslet.gateware.rtps.ports import DISCOVERY, READ_LATENCY, ReadSignature, WriteSignature
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 from roslet.gateware.words import MessageSignature
 from roslet.wire.rtps import locator, qos
@@ -25,66 +23,69 @@ from roslet.wire.rtps.participant_data import DEFAULT_LEASE
 
 PL_CDR = 0x02
 """The second octet of an encapsulation header, whose lowest bit says little endian."""
-_NEVER = 0x7FFFFFFF
-"""Seconds of DURATION_INFINITE."""
 LOOPBACK = 127
 GROUP = int.from_bytes(locator.SPDP_MULTICAST_ADDRESS, "little")
 """The group of all participants, as a word has it."""
 USER_GROUP_PORT = locator.user_multicast_port(0) - locator.metatraffic_multicast_port(0)
 """How far behind the port of announcements that of messages to the group is. RTPS 2.3, 9.6.1.1."""
-MAX_LEASE = 0xFFFF
-"""Seconds: leases are taken to be no longer, 18 hours."""
 
+_ROW = data.StructLayout(
+    dict.fromkeys(
+        (
+            *("known", "must", "end", "guid", "lease", "locator", "user", "group", "text", "type"),
+            *("reliability", "durability", "readers", "domain", "few", "zero", "never"),
+            *("then_never", "then_false", "representation"),
+        ),
+        1,
+    )
+)
+"""What is done with the value of a parameter: its first words are kept, or judged.
 
-class _What(enum.IntEnum):
-    """What is done with the value of a parameter."""
-
-    SKIP = 0
-    GUID = 1
-    LEASE = 2
-    LOCATOR = 3
-    USER_LOCATOR = 4
-    DOMAIN = 5
-    TAG = 6
-    TOPIC = 7
-    TYPE = 8
-    RELIABILITY = 9
-    DURABILITY = 10
-    DEADLINE = 11
-    LIVELINESS = 12
-    OWNERSHIP = 13
-    ORDER = 14
-    PRESENTATION = 15
-    PARTITION = 16
-    REPRESENTATION = 17
-    GROUP = 18
-
+`known`: anything; `must` be understood, by its id; `end` of the list. `locator`, of the `user`'s messages or of discovery,
+or of a `group`; `text`, of the `type` or topic. What refuses, `readers` only or everybody: another `domain`; a first word
+that is not 0 or 1 (`few`), not `zero`, not that of DURATION_INFINITE (`never`); a second one that is not that
+(`then_never`), or begins with a boolean that is true (`then_false`); another `representation`."""
 
 _OF_PARTICIPANTS = {
-    pl.PID_PARTICIPANT_GUID: _What.GUID,
-    pl.PID_PARTICIPANT_LEASE_DURATION: _What.LEASE,
-    pl.PID_METATRAFFIC_UNICAST_LOCATOR: _What.LOCATOR,
-    pl.PID_DEFAULT_UNICAST_LOCATOR: _What.USER_LOCATOR,
-    pl.PID_DEFAULT_MULTICAST_LOCATOR: _What.GROUP,
-    pl.PID_DOMAIN_ID: _What.DOMAIN,
-    pl.PID_DOMAIN_TAG: _What.TAG,
+    pl.PID_SENTINEL: "end",
+    pl.PID_PARTICIPANT_GUID: "guid",
+    pl.PID_PARTICIPANT_LEASE_DURATION: "lease",
+    pl.PID_METATRAFFIC_UNICAST_LOCATOR: "locator",
+    pl.PID_DEFAULT_UNICAST_LOCATOR: "locator user",
+    pl.PID_DEFAULT_MULTICAST_LOCATOR: "group",
+    pl.PID_DOMAIN_ID: "domain",
+    pl.PID_DOMAIN_TAG: "must few",  # a text with no more than its NUL
 }
+# By the default of each policy: AUTOMATIC, SHARED, BY_RECEPTION_TIMESTAMP, INSTANCE, no partition.
 _OF_ENDPOINTS = {
-    pl.PID_ENDPOINT_GUID: _What.GUID,
-    pl.PID_UNICAST_LOCATOR: _What.USER_LOCATOR,
-    pl.PID_MULTICAST_LOCATOR: _What.GROUP,
-    pl.PID_TOPIC_NAME: _What.TOPIC,
-    pl.PID_TYPE_NAME: _What.TYPE,
-    pl.PID_RELIABILITY: _What.RELIABILITY,
-    pl.PID_DURABILITY: _What.DURABILITY,
-    pl.PID_DEADLINE: _What.DEADLINE,
-    pl.PID_LIVELINESS: _What.LIVELINESS,
-    pl.PID_OWNERSHIP: _What.OWNERSHIP,
-    pl.PID_DESTINATION_ORDER: _What.ORDER,
-    pl.PID_PRESENTATION: _What.PRESENTATION,
-    pl.PID_PARTITION: _What.PARTITION,
-    pl.PID_DATA_REPRESENTATION: _What.REPRESENTATION,
+    pl.PID_SENTINEL: "end",
+    pl.PID_ENDPOINT_GUID: "guid",
+    pl.PID_UNICAST_LOCATOR: "locator user",
+    pl.PID_MULTICAST_LOCATOR: "group",
+    pl.PID_TOPIC_NAME: "text",
+    pl.PID_TYPE_NAME: "text type",
+    pl.PID_RELIABILITY: "reliability",
+    pl.PID_DURABILITY: "durability",
+    pl.PID_DEADLINE: "readers never",
+    pl.PID_LIVELINESS: "readers zero then_never",
+    pl.PID_OWNERSHIP: "zero",
+    pl.PID_DESTINATION_ORDER: "readers zero",
+    pl.PID_PRESENTATION: "readers zero then_false",
+    pl.PID_PARTITION: "zero",
+    pl.PID_DATA_REPRESENTATION: "representation",
 }
+_ID_BITS = 7
+"""Of an id, those by which the table is read: no two in it have the same."""
+
+
+def _rows(*lists: Mapping[int, str]) -> list[dict[str, int]]:
+    """The table: a row for each of these lists and low bits of an id."""
+    rows: list[dict[str, int]] = []
+    for table in lists:
+        found = {pid % (1 << _ID_BITS): f"known {words}" for pid, words in table.items()}
+        rows += [dict.fromkeys(found.get(n, "").split(), 1) for n in range(1 << _ID_BITS)]
+    return rows
+
 
 READ = data.StructLayout(
     {
@@ -93,31 +94,80 @@ READ = data.StructLayout(
         "user": 1,
         "topic": 1,
         "type": 1,
-        "lease": 16,
-        "entity": 32,
         "refused": 1,
         "reliable": 1,
         "durability": 2,
     }
 )
-"""What a list has said. `guid`, `meta`, `user`, `topic`, `type`: it was there (the locators, one that can be used); `lease`
-in seconds; `entity` id; `refused`, a policy that none of our endpoints agrees to, or another domain, or something that must
-be understood; `reliable` and `durability`, kinds, as offered or requested."""
+"""What a list has said. `guid`, `meta`, `user`, `topic`, `type`: it was there (the locators, one that can be used);
+`refused`, a policy that none of our endpoints agrees to, or another domain, or something that must be understood;
+`reliable` and `durability`, kinds, as offered or requested."""
+
+
+LAST = 5
+"""The step in which a word that is looked at is taken: in four its octets pass, in two it is judged and kept."""
+
+
+class _Passing:
+    """What is passing: a parameter's header, or its value."""
+
+    def __init__(self, locals_: int, peers: PeerMap) -> None:
+        self.act, self.known = Signal(_ROW), Signal()
+        self.must = Signal()  # it must be understood
+        self.little = Signal()
+        self.last_of_text = 4 * locals_ + READ_LATENCY - 1
+        self.step = Signal(range(self.last_of_text + 1))  # within a word
+        self.last = Signal(init=1)  # the word is taken
+        self.octet, self.place = Signal(8), Signal(2)  # one of its octets, and which
+        self.passes = Signal()  # these do, for the first time
+        self.shifts = Signal()  # and its number is kept
+        # Of a word as a number: its lower half; that, or the other one, is not zero; it is DURATION_INFINITE's seconds.
+        self.number, self.any, self.high, self.never = Signal(16), Signal(), Signal(), Signal()
+        self.at = Signal(14)  # words of the value before this one
+        self.first, self.second = Signal(), Signal()
+        # Of a text: this word has what is left of its octets, less than four; it has none.
+        self.partial, self.over = Signal(), Signal()
+        self.unlike = Signal()  # an octet of it was not like that of the endpoint which was looked at
+        self.usable = Signal()  # the locator; of a list, it has one item
+        self.near = Signal(2)  # what was taken, of discovery and of the user's, is in our subnet
+        # What is kept, and where
+        self.keeps_word, self.keeps_number, self.keeps_high = Signal(), Signal(), Signal()
+        self.target = Signal(peers.address_bits)
+
+    def octets(self, m: Module, word: Value) -> None:
+        """The octets of a word pass, that with the highest bits of a number first."""
+        octet, begins = self.octet, Signal()
+        m.d.comb += [
+            self.place.eq(self.step[:2] ^ self.little.replicate(2)),
+            octet.eq(word.word_select(self.place, 8)),
+            self.passes.eq(~self.step[2:].any()),
+            begins.eq(self.step[:2] == 0),
+            self.any.eq(self.number.any()),
+        ]
+        with m.If(self.passes):
+            m.d.sync += self.never.eq((octet[:7] == 0x7F) & (octet[7] ^ begins) & (self.never | begins))
+            with m.If(~self.step[1]):
+                m.d.sync += self.high.eq(octet.any() | (self.high & ~begins))
+            with m.If(self.shifts):
+                m.d.sync += self.number.eq(Cat(octet, self.number[:8]))
 
 
 class Parameters(wiring.Component):
     """Reads one list at a time.
 
     Ports: `i`, lists with their encapsulation header; `peers` and `own`, read ports; `write`; `addresses`, `group_port`
-    (where all are announced to), `domain`, ours:
-    that is not looked at where `judge_domain` is false.
+    (where all are announced to), `domain`, ours: that is not looked at where `judge_domain` is false.
     `read` is what the list has said, and `same` a bit for each of our endpoints of the other kind: it has this topic and
     this type. `near`: where it takes the user's messages is in our subnet; `listens`: it takes them by the group of all
     participants as well, at the port for these. All are steady while `done` is high: the list's good end is at `i`, and
     stays there until `proceed` is high for a cycle. After a bad end the next list is read.
 
-    In the scratch area there are then the words of a participant, of which `read` says whether they were there, or of an
-    endpoint its locator. Of several locators the first in our own subnet is taken, else the first.
+    In the scratch area there are then the words of a participant, of which `read` says whether they were there, but for its
+    lease, which is there in any case, or of an endpoint its locator; and the entity id of a GUID that was there, at
+    SCRATCH_ENTITY. Of several locators the first in our own subnet is taken, else the first.
+
+    A parameter's header takes seven cycles, a word of a value six, or of a text that may be ours four for each of our
+    endpoints and two, a word that is not looked at one.
 
     Good lists that are not what they should be are dropped: `drop_malformed`: no PL_CDR, no end, a value longer than the
     list, or a GUID that is not the sender's.
@@ -151,77 +201,77 @@ class Parameters(wiring.Component):
         word = i.payload.data
         came, ended = Signal(), Signal()
         m.d.comb += [came.eq(i.valid & ~i.payload.end), ended.eq(i.valid & i.payload.end)]
-        little = Signal()
-        number = Signal(32)  # the word as one, in the cycle after
-        m.d.sync += number.eq(Mux(little, word, exchanged(word)))
-        is_participant = meta.kind == ports.PARTICIPANTS
-
-        what = Signal(_What)
-        # Words of a value: still to come, less one, so that after the last the highest bit is set; and before
-        left, at = Signal(15), Signal(10)
-        step = Signal(range(self.locals + READ_LATENCY + 1))  # within a word
-        text_left = Signal(16)
-        masked = Signal(32)
-        # Of a locator whose words are passing
-        self._usable, self._port = Signal(), Signal(16)
-        self._user_group_port = Signal(16)
-        self._near = [Signal(), Signal()]  # what was taken, of each kind, is in our subnet
+        m.submodules.table = table = memory.Memory(
+            shape=_ROW, depth=2 << _ID_BITS, init=_rows(_OF_ENDPOINTS, _OF_PARTICIPANTS)
+        )
+        row = table.read_port()
+        v = _Passing(self.locals, self._peers)
+        v.octets(m, word)
+        length = Signal(16)
+        m.d.sync += v.step.eq(v.step + came)
+        with m.If(v.last):
+            m.d.sync += v.step.eq(0)
+        # Whose word the memory gives next, and now, and gave before
+        addressed, shown, judged = (Signal(range(self.locals)) for _ in range(3))
+        m.d.sync += [addressed.eq(v.step[2:]), shown.eq(addressed), judged.eq(shown), v.unlike.eq(0)]
+        with m.If(v.unlike):
+            m.d.sync += self.same.bit_select(judged, 1).eq(0)
         m.d.comb += [
-            self._user_group_port.eq(self.group_port + USER_GROUP_PORT),
-            self.near.eq(Mux(read.user, self._near[1], self._near[0])),
+            row.addr.eq(Cat(v.number[:_ID_BITS], meta.kind == ports.PARTICIPANTS)),
+            self.near.eq(Mux(read.user, v.near[1], v.near[0])),
         ]
 
-        with m.FSM():
+        with m.FSM() as fsm:
             with m.State("IDLE"):
-                default = meta.kind == ports.PUBLICATIONS  # writers are reliable if they say nothing
-                m.d.sync += [read.eq(0), read.reliable.eq(default), self.same.eq(-1)]
-                m.d.sync += [near.eq(0) for near in self._near]
-                m.d.sync += self.listens.eq(0)
-                m.d.sync += read.lease.eq(DEFAULT_LEASE // 1_000_000_000)
                 with m.If(ended):
                     m.next = "DONE"  # what is gone may have no list
                 with m.Elif(i.valid):
                     m.next = "ENCAPSULATION"
             with m.State("ENCAPSULATION"):
                 m.d.comb += i.ready.eq(1)
-                m.d.sync += little.eq(word[8])
+                m.d.comb += [v.keeps_number.eq(1), v.target.eq(self._peers.scratch(tables.LEASE))]
+                m.d.sync += v.little.eq(word[8])
                 m.next = "PARAMETER"
                 with m.If((word[:8] != 0) | (word[9:16] != PL_CDR >> 1)):
                     m.next = "MALFORMED"
             with m.State("PARAMETER"):
-                pid = Mux(little, word[:16], Cat(word[8:16], word[:8]))
-                length = Mux(little, word[16:32], Cat(word[24:32], word[16:24]))
-                # What must be understood, and is not.
-                unknown = (pid & pl.FLAG_MUST_UNDERSTAND).any() & ~(pid & pl.FLAG_VENDOR).any()
-                m.d.sync += [what.eq(_What.SKIP), left.eq(length[2:] - 1), at.eq(0), step.eq(0)]
-                for here, table in ((is_participant, _OF_PARTICIPANTS), (~is_participant, _OF_ENDPOINTS)):
-                    with m.If(here & came), m.Switch(pid):
-                        for value, action in table.items():
-                            with m.Case(value):
-                                m.d.sync += what.eq(action)
-                        with m.Default(), m.If(unknown):
-                            m.d.sync += read.refused.eq(1)
-                with m.If(came):
-                    m.d.comb += i.ready.eq(1)
+                # Of an id and a length, as a number, the upper half passes first.
+                of_id = v.step[1] == v.little
+                m.d.comb += [v.shifts.eq(of_id), v.last.eq(v.step == LAST), i.ready.eq(came & v.last)]
+                with m.If(v.passes & ~of_id):
+                    m.d.sync += length.eq(Cat(v.octet, length[:8]))
+                known = v.number[_ID_BITS:] == row.data.must << 14 - _ID_BITS
+                m.d.sync += [v.act.eq(row.data), v.known.eq(known & row.data.known)]
+                m.d.sync += v.must.eq(v.number[14] & ~v.number[15])
+                with m.If(i.ready):
                     m.next = "VALUE"
-                    with m.If(length[:2] != 0):
-                        m.next = "MALFORMED"
-                    with m.If(pid == pl.PID_SENTINEL):
-                        m.next = "REST"
-                with m.Elif(i.valid):
+                with m.If(ended):
                     m.next = "MALFORMED"
             with m.State("VALUE"):
-                with m.If(left[-1]):
+                with m.If(v.must & ~v.known):
+                    m.d.sync += read.refused.eq(1)
+                with m.If(v.known & v.act.end):
+                    m.next = "REST"
+                with m.Elif(length[:2] != 0):
+                    m.next = "MALFORMED"
+                with m.Elif(v.at == length[2:]):
                     m.next = "PARAMETER"
+                    with m.If(~v.over & ~(v.partial & (v.number[:2] == 0))):
+                        m.next = "MALFORMED"
                 with m.Elif(ended):
                     m.next = "MALFORMED"
+                with m.Elif(came & ~v.known):
+                    m.d.comb += i.ready.eq(1)
                 with m.Elif(came):
-                    last = Signal()  # cycle of this word
-                    m.d.comb += [last.eq(step == 1), i.ready.eq(last)]
-                    m.d.sync += step.eq(step + 1)
-                    with m.If(last):
-                        m.d.sync += [left.eq(left - 1), at.eq(at + ~at.all()), step.eq(0)]
-                    self._value(m, what, at, step, word, number, little, left, last, text_left, masked)
+                    longer = v.act.text & self.same.any()
+                    m.d.comb += [
+                        v.last.eq((v.step == v.last_of_text) | ((v.step == LAST) & ~longer)),
+                        i.ready.eq(v.last),
+                    ]
+                    self._judge(m, v)
+                    self._guid(m, v)
+                    self._locator(m, v)
+                    self._text(m, v)
             with m.State("REST"):
                 m.d.comb += i.ready.eq(came)
                 with m.If(ended):
@@ -234,163 +284,120 @@ class Parameters(wiring.Component):
                 m.d.comb += [i.ready.eq(1), self.drop_malformed.eq(ended & ~i.payload.bad)]
                 with m.If(ended):
                     m.next = "IDLE"
+        # Below all states: so these are resets of registers, not inputs of multiplexers.
+        with m.If(i.valid & i.ready):
+            m.d.sync += [v.at.eq(v.at + 1), v.first.eq(0), v.second.eq(v.first)]
+        with m.If(fsm.ongoing("PARAMETER")):
+            m.d.sync += [v.at.eq(0), v.first.eq(1), v.second.eq(0), v.over.eq(1)]
+        with m.If(fsm.ongoing("IDLE")):
+            default = meta.kind == ports.PUBLICATIONS  # writers are reliable if they say nothing
+            m.d.sync += [read.eq(0), read.reliable.eq(default), self.same.eq(-1)]
+            m.d.sync += [v.near.eq(0), self.listens.eq(0), v.number.eq(DEFAULT_LEASE // 1_000_000_000)]
+        kept_word, kept_number = Signal(32), Signal(tables.LEASE_BITS)
+        m.d.sync += [
+            self.write.en.eq(v.keeps_word | v.keeps_number),
+            self.write.addr.eq(v.target),
+            kept_word.eq(word),
+            kept_number.eq(Cat(v.number, v.keeps_high)),
+        ]
+        for keeps, kept in ((v.keeps_word, kept_word), (v.keeps_number, kept_number)):
+            with m.If(~keeps):
+                m.d.sync += kept.eq(0)
+        m.d.comb += self.write.data.eq(kept_word | kept_number)
         return m
 
-    def _value(
-        self,
-        m: Module,
-        what: Value,
-        at: Value,
-        step: Value,
-        word: Value,
-        number: Value,
-        little: Value,
-        left: Value,
-        last: Value,
-        text_left: Value,
-        masked: Value,
-    ) -> None:
-        """One word of a value, which stands there until `last`."""
-        meta, read = self.i.meta, self.read
-        reader = meta.kind == ports.SUBSCRIPTIONS  # it requests; what it requests beyond our offer is refused
-        own_ip, mask = Value.cast(self.addresses.ip), Value.cast(self.addresses.mask)
-
-        def keep(target: Value, value: Value) -> None:
-            m.d.comb += [self.write.en.eq(1), self.write.addr.eq(target), self.write.data.eq(value)]
-
-        def refuse(condition: Value) -> None:
-            with m.If(condition & (step != 0)):
-                m.d.sync += read.refused.eq(1)
-
-        first, second = at == 0, at == 1
-        with m.Switch(what):
-            with m.Case(_What.GUID):
-                m.d.comb += self.peers.addr.eq(self._peers.scratch((tables.SCRATCH_SOURCE + at)[:4]))
-                m.d.comb += last.eq(step == READ_LATENCY)
-                with m.If(at == 3):
-                    m.d.sync += [read.entity.eq(word), read.guid.eq(1)]
-                with m.Elif(at[2:] == 0):
-                    keep(self._peers.scratch(at), word)
-                    with m.If(last & (self.peers.data != word)):
-                        m.next = "MALFORMED"
-            with m.Case(_What.LEASE), m.If(first):
-                m.d.sync += read.lease.eq(Mux(number[16:].any(), MAX_LEASE, number[:16]))
-            for kind, flag, ip in (
-                (_What.LOCATOR, read.meta, tables.META_IP),
-                (_What.USER_LOCATOR, read.user, tables.USER_IP),
-            ):
-                with m.Case(kind):
-                    self._locator(
-                        m, at, step, word, number, last, flag, ip, ((word ^ own_ip) & mask) == 0, keep
-                    )
-            with m.Case(_What.GROUP):
-                self._group(m, at, step, word, number, last)
-            with m.Case(_What.DOMAIN):
-                if self._judge_domain:
-                    refuse(first & (number != self.domain))
-            with m.Case(_What.TAG):
-                refuse(first & (number[1:] != 0))  # a text with more than its NUL
-            for kind, flag, is_type in ((_What.TOPIC, read.topic, 0), (_What.TYPE, read.type, 1)):
-                with m.Case(kind):
-                    self._text(m, at, step, word, number, left, last, text_left, masked, flag, is_type)
-            with m.Case(_What.RELIABILITY), m.If(first):
-                m.d.sync += read.reliable.eq(number == qos.RELIABLE)
-            with m.Case(_What.DURABILITY), m.If(first):
+    def _judge(self, m: Module, v: _Passing) -> None:
+        """Numbers: what is read of them, and what is not as it should be."""
+        act, read, number = v.act, self.read, v.number
+        first, second = v.first & v.last, v.second & v.last
+        m.d.comb += v.shifts.eq(v.first | (v.second & ~act.text))
+        reader = (
+            self.i.meta.kind == ports.SUBSCRIPTIONS
+        )  # it requests; what it requests beyond our offer is refused
+        beyond = v.high | number[2:].any()
+        is_few = ~beyond & ~number[1]
+        # The halves of a word as they came
+        front, back = Mux(v.little, v.any, v.high), Mux(v.little, v.high, v.any)
+        at_first = (act.zero & (v.any | v.high)) | (act.never & ~v.never) | (act.few & ~is_few)
+        if self._judge_domain:
+            at_first |= act.domain & (v.high | (number != self.domain))
+        # A writer uses the first of its list, a reader takes any of it; the first two are looked at. XCDR1 is 0.
+        other = front & ~(reader & ~v.usable & ~back)
+        at_second = (act.then_never & ~v.never) | (act.then_false & front) | (act.representation & other)
+        with m.If(((first & at_first) | (second & at_second)) & (reader | ~act.readers)):
+            m.d.sync += read.refused.eq(1)
+        with m.If(first):
+            m.d.sync += v.usable.eq(is_few & number[0])  # 1: UDPv4; one item
+            with m.If(act.reliability):
+                m.d.sync += read.reliable.eq(~beyond & (number[:2] == qos.RELIABLE))
+            with m.If(act.durability):
                 m.d.sync += read.durability.eq(number[:2])
-            with m.Case(_What.DEADLINE):
-                refuse(first & reader & (number != _NEVER))
-            with m.Case(_What.LIVELINESS):
-                refuse(reader & ((first & (number != qos.AUTOMATIC)) | (second & (number != _NEVER))))
-            with m.Case(_What.OWNERSHIP):
-                refuse(first & (number != qos.SHARED))
-            with m.Case(_What.ORDER):
-                refuse(first & reader & (number != qos.BY_RECEPTION_TIMESTAMP))
-            with m.Case(_What.PRESENTATION):
-                refuse(reader & ((first & (number != qos.INSTANCE)) | (second & (word[:16] != 0))))
-            with m.Case(_What.PARTITION):
-                refuse(first & (number != 0))
-            with m.Case(_What.REPRESENTATION):
-                # A writer uses the first of its list, a reader takes any of it; the first two are looked at.
-                ids = Mux(little, word, Cat(word[8:16], word[:8], word[24:32], word[16:24]))
-                one = Signal()  # there is no second
-                with m.If(first):
-                    m.d.sync += one.eq(number == 1)
-                also = reader & ~one & (ids[16:] == qos.XCDR1)
-                refuse(second & (ids[:16] != qos.XCDR1) & ~also)
+        with m.If(act.lease & v.first & ~v.passes):
+            m.d.comb += [
+                v.keeps_number.eq(1),
+                v.keeps_high.eq(v.high),
+                v.target.eq(self._peers.scratch(tables.LEASE)),
+            ]
 
-    def _locator(
-        self,
-        m: Module,
-        at: Value,
-        step: Value,
-        word: Value,
-        number: Value,
-        last: Value,
-        flag: Value,
-        ip: int,
-        is_near: Value,
-        keep: Callable[[Value, Value], None],
-    ) -> None:
-        """Kind, port, twelve zeros, address. `is_near`: `word` is an address of our own subnet."""
-        usable, port = self._usable, self._port
-        near = self._near[ip == tables.USER_IP]
-        with m.If(at == 0):
-            m.d.sync += usable.eq(number == locator.LOCATOR_KIND_UDPv4)
-        with m.Elif((at == 1) & (step != 0)):
-            m.d.sync += [port.eq(number), usable.eq(usable & (number[:16] != 0) & (number[16:] == 0))]
-        with m.Elif(at == 5):
-            wanted = usable & (word[:8] != 0) & (word[:8] != LOOPBACK) & (~flag | (is_near & ~near))
-            m.d.comb += last.eq(step == 1)
-            with m.If(wanted):
-                keep(self._peers.scratch(Mux(step == 0, ip, ip + 1)), Mux(step == 0, word, port))
-                with m.If(last):
-                    m.d.sync += [flag.eq(1), near.eq(is_near)]
+    def _guid(self, m: Module, v: _Passing) -> None:
+        """Its prefix must be its sender's."""
+        with m.If(v.act.guid & (v.at[2:] == 0)):
+            m.d.comb += self.peers.addr.eq(self._peers.scratch((tables.SCRATCH_SOURCE + v.at[:2])[:4]))
+            is_entity = v.at[:2] == 3
+            target = self._peers.scratch(v.at[:2] | Mux(is_entity, tables.SCRATCH_ENTITY, 0))
+            m.d.comb += [v.keeps_word.eq(1), v.target.eq(target)]
+            with m.If(is_entity):
+                m.d.sync += self.read.guid.eq(1)
+            with m.Elif(v.last & (self.peers.data != self.i.stream.payload.data)):
+                m.next = "MALFORMED"
 
-    def _group(self, m: Module, at: Value, step: Value, word: Value, number: Value, last: Value) -> None:
-        """A locator of a group: whether it is the one that we know, at the port for the user's messages."""
-        usable = self._usable
-        with m.If(at == 0):
-            m.d.sync += usable.eq(number == locator.LOCATOR_KIND_UDPv4)
-        with m.Elif((at == 1) & (step != 0)):
-            m.d.sync += usable.eq(usable & (number == self._user_group_port))
-        with m.Elif((at == 5) & last & usable & (word == GROUP)):
-            m.d.sync += self.listens.eq(1)
+    def _locator(self, m: Module, v: _Passing) -> None:
+        """Kind, port, twelve zeros, address: of somebody, or of the group that we know."""
+        act, read = v.act, self.read
+        word = self.i.stream.payload.data
+        own_ip, mask = Value.cast(self.addresses.ip), Value.cast(self.addresses.mask)
+        is_near = ((word ^ own_ip) & mask) == 0
+        user_group_port = Signal(16)
+        m.d.comb += user_group_port.eq(self.group_port + USER_GROUP_PORT)
+        with m.If(v.second & v.last):
+            m.d.sync += v.usable.eq(v.usable & ~v.high & Mux(act.group, v.number == user_group_port, v.any))
+        flag, near = Mux(act.user, read.user, read.meta), v.near.bit_select(act.user, 1)
+        wanted = (word[:8] != 0) & (word[:8] != LOOPBACK) & (~flag | (is_near & ~near))
+        with m.If((v.at == 5) & v.usable & ~v.passes):
+            with m.If(act.group & (word == GROUP)):
+                m.d.sync += self.listens.eq(1)
+            with m.If(act.locator & wanted):
+                ip, port = (
+                    Mux(act.user, *both)
+                    for both in ((tables.USER_IP, tables.META_IP), (tables.USER_PORT, tables.META_PORT))
+                )
+                m.d.comb += [
+                    v.keeps_word.eq(~v.last),
+                    v.keeps_number.eq(v.last),
+                    v.target.eq(self._peers.scratch(Mux(v.last, port, ip))),
+                ]
+                with m.If(v.last):
+                    m.d.sync += near.eq(is_near)
+                    with m.If(act.user):
+                        m.d.sync += read.user.eq(1)
+                    with m.Else():
+                        m.d.sync += read.meta.eq(1)
 
-    def _text(
-        self,
-        m: Module,
-        at: Value,
-        step: Value,
-        word: Value,
-        number: Value,
-        left: Value,
-        last: Value,
-        text_left: Value,
-        masked: Value,
-        flag: Value,
-        is_type: int,
-    ) -> None:
-        """A text: compared, a word at a time, with that of each of our endpoints of the other kind."""
-        first = at == 0
-        m.d.sync += masked.eq(Mux(first, number, word))  # which is looked at later: the word stays
-        for n in range(4):
-            with m.If(~first & below(text_left, n + 1)):
-                m.d.sync += masked.word_select(n, 8).eq(0)
+    def _text(self, m: Module, v: _Passing) -> None:
+        """A text: compared, an octet at a time, with that of each of our endpoints of the other kind."""
         reader = self.i.meta.kind == ports.PUBLICATIONS
-        m.d.comb += [
-            self.own.addr.eq(self._own.text(reader, Const(is_type, 1), step, at)),
-            last.eq(step == self.locals + READ_LATENCY - 1),
-        ]
-        # Whose word the memory gives next, and now
-        addressed, shown = Signal(range(self.locals)), Signal(range(self.locals))
-        m.d.sync += [addressed.eq(step), shown.eq(addressed)]
-        with m.If((step >= READ_LATENCY) & (first | (text_left != 0))):
-            for n in range(self.locals):
-                with m.If((shown == n) & (self.own.data != masked)):
-                    m.d.sync += self.same[n].eq(0)
-        with m.If(last):
-            m.d.sync += text_left.eq(Mux(text_left[2:] != 0, Cat(text_left[:2], text_left[2:] - 1), 0))
-            with m.If(first):
-                m.d.sync += [text_left.eq(number), flag.eq(number[16:] == 0)]
-                with m.If((number == 0) | (number[16:] != 0) | (((number[:16] + 3) >> 2) > left[:-1])):
-                    m.next = "MALFORMED"
+        # Its length is compared as a number.
+        own = self.own.data.word_select(v.step[:2] ^ (v.little | v.first).replicate(2), 8)
+        counts = v.first | (~v.over & (~v.partial | (v.place < v.number[:2])))
+        m.d.sync += v.unlike.eq(v.act.text & (v.step >= READ_LATENCY) & counts & (own != v.octet))
+        with m.If(v.act.text):
+            m.d.comb += self.own.addr.eq(self._own.text(reader, v.act.type, v.step[2:], v.at))
+            with m.If(v.last):
+                m.d.sync += [v.partial.eq(v.at == v.number[2:]), v.over.eq(~v.first & (v.over | v.partial))]
+                with m.If(v.first):
+                    with m.If(v.act.type):
+                        m.d.sync += self.read.type.eq(1)
+                    with m.Else():
+                        m.d.sync += self.read.topic.eq(1)
+                    with m.If(v.high | ~v.any):
+                        m.next = "MALFORMED"

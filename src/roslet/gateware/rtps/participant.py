@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from amaranth.hdl import Cat, Module, Signal, Value
+from amaranth.hdl import Module, Mux, Signal, Value
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
 from roslet.gateware.fifo import MessageRegister
 from roslet.gateware.meta import ADDRESSES, UDP_RX, UDP_TX, LookupSignature
+from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.composer import Composer
 from roslet.gateware.rtps.discovery import Discovery
-from roslet.gateware.rtps.outbox import HEADER, Outbox
+from roslet.gateware.rtps.outbox import Outbox
 from roslet.gateware.rtps.ports import DISCOVERY, SUBMESSAGE, USER, WriteSignature
 from roslet.gateware.rtps.queue import DatagramQueue
 from roslet.gateware.rtps.rom import Rom
@@ -76,12 +77,14 @@ class Participant(wiring.Component):
             words = [int.from_bytes(octets[at : at + 4], "little") for at in range(0, len(octets), 4)]
             at = own.samples[n] + own.stride(local) * (1 % local.depth)
             self._init[at : at + 1 + len(words)] = [len(words) | (-len(octets) % 4) << 16, *words]
-            self._init[own.writer_address(n, 0)] = self._init[own.writer_address(n, 2)] = 1
+            self._init[own.writer_address(n, tables.WRITER_LAST)] = 1
+            self._init[own.writer_address(n, tables.WRITER_OLDEST)] = 0
         self._rom = Rom(own, domain, lease)
         most = 4 * max(self._rom.size[name] for name in self._rom.size)
         most += 4 * max((local.words for local in own.writers), default=0)
+        self.most = most  # octets of a datagram that is sent
         depth = 512
-        while depth < 2 * (HEADER + most // 4 + 1):
+        while depth < 2 * (most // 4 + 1):
             depth *= 2
         self._users, self._readers = len(writers), len(readers)
         self._blocks: dict[str, Any] = {
@@ -204,9 +207,8 @@ class Participant(wiring.Component):
             self.alive.eq(discovery.alive),
             self.matched.eq(discovery.matched),
         ]
-        # In the cycle after, as what follows from them takes long
-        for given, due in ((discovery.due, turns.due0), (submessages.due, turns.due1)):
-            m.d.sync += [due.en.eq(given.en), due.proxy.eq(given.proxy)]
+        connect(m, discovery.due, turns.due0)
+        connect(m, submessages.due, turns.due1)
         self._memories(m, composer)
         return m
 
@@ -228,20 +230,31 @@ class Participant(wiring.Component):
                 m.d.comb += [user.data.eq(word) for user in users]
                 given[side, name] = read.addr, word
         write, ours = peers.write_port(), own.write_port()
-        # In the cycle after, as what is written takes long; but for what comes from outside, while this is held in reset
-        later = WriteSignature(len(ours.addr)).create()
-        for domain, port, writers in (
-            (m.d.sync, write, (walker.source, submessages.write, discovery.write)),
-            (m.d.sync, later, (sender.write,)),
-            (m.d.comb, ours, (later, self.own)),
+        # In the cycle after, as what is written takes long; what comes from outside does while this is held in reset
+        receiving = walker.source, submessages.write, discovery.write
+        outside = self.own.en
+        for port, given_ in (
+            (
+                write,
+                {name: _either(getattr(one, name) for one in receiving) for name in ("en", "addr", "data")},
+            ),
+            (
+                ours,
+                {
+                    "en": sender.write.en | outside,
+                    "addr": Mux(outside, self.own.addr, sender.write.addr),
+                    "data": Mux(outside, self.own.data, sender.write.data),
+                },
+            ),
         ):
-            domain += [
-                port.en.eq(Cat(writer.en for writer in writers).any()),
-                port.addr.eq(_either(writer.addr for writer in writers)),
-                port.data.eq(_either(writer.data for writer in writers)),
-            ]
-        # Block RAM gives anything of a word that is being written. Each side may read one of the other's: it gets the new.
-        for port, (address, word) in ((write, given["sending", "peers"]), (ours, given["receiving", "own"])):
+            for name, value in given_.items():
+                later = Signal.like(getattr(port, name), reset_less=True)
+                m.d.comb += getattr(port, name).eq(later)
+                m.d.sync += later.eq(value)
+        # Block RAM gives anything of a word that is being written. Each side may read one of the other's: of peers it gets
+        # the new. Of ours, where who receives looks at the same word for some cycles, it keeps what it had.
+        for port, side, name in ((write, "sending", "peers"), (ours, "receiving", "own")):
+            address, word = given[side, name]
             looked_at, written, wrote, new = Signal.like(address), Signal.like(address), Signal(), Signal(32)
             m.d.sync += [
                 looked_at.eq(address),
@@ -250,7 +263,10 @@ class Participant(wiring.Component):
                 new.eq(port.data),
             ]
             with m.If(wrote & (looked_at == written)):
-                m.d.sync += word.eq(new)
+                m.d.sync += word.eq(new if port is write else word)
+        for hidden, name in ((composer.hide_peers, "peers"), (composer.hide_own, "own")):
+            with m.If(hidden):
+                m.d.sync += given["sending", name][1].eq(0)
 
 
 def _either(values: Any) -> Any:

@@ -90,3 +90,17 @@ class Periods(wiring.Component):
                 m.d.sync += [waiting.eq(0), gap.eq(self.interval), free.eq(0)]
             given = given | waiting
         return m
+
+
+def every(m: Module, count: int, of: Value) -> Value:
+    """High in the cycle after the last of each `count` cycles in which `of` is."""
+    over = Signal()
+    if count == 1:
+        m.d.sync += over.eq(of)
+        return over
+    bits = (count - 1).bit_length()
+    start = (1 << bits) - count
+    at, after = Signal(bits, init=start), Signal(bits + 1)  # what overflows needs no comparison
+    m.d.comb += after.eq(at + of)
+    m.d.sync += [at.eq(Mux(after[-1], start, after)), over.eq(after[-1])]
+    return over

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Cat, Const, Module, Mux, Signal
-from amaranth.lib import wiring
-from amaranth.lib.fifo import SyncFIFOBuffered
+from amaranth.hdl import Module, Signal
+from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.meta import UDP_RX
 from roslet.gateware.stream import FrameSignature
-from roslet.gateware.words import WORD, MessageSignature
-
-SPARE = 2
-"""Places for the last word and the end of a datagram that is too long."""
+from roslet.gateware.words import MessageSignature
 
 
 class DatagramQueue(wiring.Component):
@@ -22,15 +18,16 @@ class DatagramQueue(wiring.Component):
     that `o` gives is in the queue, or at `o`, and `good` is then whether it is a good one. So who reads `o` may act on what
     it has read before it has read all of it.
 
-    Throughput one octet a cycle; a word leaves 4 cycles after its last octet came. After the end of a datagram `i` waits
-    until that has been taken from `o`: what comes meanwhile must be held elsewhere. A datagram that is too long gets a bad
-    end in place of what does not fit, and is counted by `drop_long` if its own end is good.
+    Throughput one octet a cycle, one word in two; a word leaves 4 cycles after its last octet came. After the end of a
+    datagram `i` waits until that has been taken from `o`: what comes meanwhile must be held elsewhere. So each datagram
+    begins at the beginning of the memory. One that is too long gets a bad end in place of what does not fit, and is counted
+    by `drop_long` if its own end is good.
     """
 
     def __init__(self, longest: int) -> None:
         if longest < 4:
             raise ValueError(f"a queue is for datagrams of 4 octets or more, not {longest}")
-        self._depth = (longest + 3) // 4 + SPARE
+        self._depth = (longest + 3) // 4
         super().__init__(
             {
                 "i": In(FrameSignature(UDP_RX)),
@@ -44,57 +41,61 @@ class DatagramQueue(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         i, o = self.i.stream, self.o.stream
-        m.submodules.words = words = SyncFIFOBuffered(width=WORD.size, depth=self._depth)
-        held = Signal(24)  # octets of a word that is not whole yet
-        at = Signal(2)
-        long = Signal()
-        item = Signal(WORD)
-        count = Signal(range(self._depth))  # words of the datagram that are in the queue, or were
-        room = count != self._depth - SPARE
-        whole = Signal()
-        spare, spared = Signal(WORD.size), Signal()  # a word for which `o` was not ready
+        m.submodules.words = words = memory.Memory(shape=32, depth=self._depth + 1, init=[])
+        write, read = words.write_port(), words.read_port()
+
+        # -- in
+        held, at = Signal(32), Signal(2)
+        whole = Signal()  # `held` is, and is being written
+        count = Signal(range(self._depth + 1))  # words that are written
+        full, long, too_long = Signal(), Signal(), Signal()
         m.d.comb += [
-            words.w_data.eq(item),
-            words.r_en.eq(~spared),
-            whole.eq(at == 3),
+            full.eq(count == self._depth),
+            too_long.eq(long | (whole & full)),
+            write.addr.eq(count),
+            write.data.eq(held),
+            write.en.eq(whole & ~full),
         ]
-        # Block RAM is slow, and who reads decides late whether it does.
-        with m.If(~o.valid | o.ready):
-            m.d.sync += [
-                o.payload.eq(Mux(spared, spare, words.r_data)),
-                o.valid.eq(spared | words.r_rdy),
-                spared.eq(0),
-            ]
-        with m.Elif(words.r_rdy & ~spared):
-            m.d.sync += [spare.eq(words.r_data), spared.eq(1)]
-        last = Signal(2)  # octets of the last word, 0 where that is whole
-        with m.If(self.known), m.If(o.valid & o.ready & o.payload.end):
-            m.d.sync += self.known.eq(0)
-        with m.Elif(i.valid & i.payload.end):
-            with m.If(at != 0):
-                m.d.comb += [item.data.eq(held), words.w_en.eq(~long)]
-                m.d.sync += [at.eq(0), last.eq(at)]
+        m.d.sync += [count.eq(count + write.en), long.eq(too_long), whole.eq(0)]
+        padding = Signal(2)
+        taken = Signal()  # `o` gave the end
+        with m.If(i.valid & ~self.known):
+            with m.If(~i.payload.end):
+                m.d.comb += i.ready.eq(1)
+                m.d.sync += [at.eq(at + 1), whole.eq(at == 3)]
+                with m.If(at == 0):
+                    m.d.sync += held.eq(0)
+                m.d.sync += held.word_select(at, 8).eq(i.payload.data)
+            with m.Elif(at != 0):
+                m.d.sync += [at.eq(0), whole.eq(1), padding.eq(-at)]
             with m.Else():
-                bad = i.payload.bad | long
-                m.d.comb += [
-                    item.end.eq(1),
-                    item.bad.eq(bad),
-                    item.padding.eq(Mux(bad, 0, Const(0, 2) - last)),
-                    words.w_en.eq(1),
-                    i.ready.eq(1),
-                    self.drop_long.eq(long & ~i.payload.bad),
-                ]
-                m.d.sync += [self.known.eq(1), self.good.eq(~bad), long.eq(0), last.eq(0), count.eq(0)]
-        with m.Elif(i.valid):
-            octet = i.payload.data
-            m.d.comb += [i.ready.eq(1), item.data.eq(Cat(held, octet)), words.w_en.eq(whole & room & ~long)]
-            m.d.sync += [at.eq(at + 1), count.eq(count + (whole & room))]
-            with m.Switch(at):
-                for n in range(3):
-                    with m.Case(n):
-                        m.d.sync += held.word_select(n, 8).eq(octet)
-            with m.If(at == 0):
-                m.d.sync += held[8:].eq(0)
-            with m.If(whole & ~room):
-                m.d.sync += long.eq(1)
+                bad = i.payload.bad | too_long
+                m.d.comb += [i.ready.eq(1), self.drop_long.eq(too_long & ~i.payload.bad)]
+                m.d.sync += [self.known.eq(1), self.good.eq(~bad)]
+                with m.If(bad):
+                    m.d.sync += padding.eq(0)
+
+        # -- out
+        next_, more = Signal.like(count), Signal()
+        fetched = Signal()  # `more` words were there a cycle before, and what is read is the next of them
+        m.d.comb += [
+            read.addr.eq(next_),
+            more.eq(next_ != count),
+            taken.eq(o.valid & o.ready & o.payload.end),
+        ]
+        m.d.sync += fetched.eq(more)
+        with m.If(o.valid & o.ready):
+            m.d.sync += o.valid.eq(0)
+        with m.If(~o.valid):
+            m.d.sync += [
+                o.payload.data.eq(read.data),
+                o.payload.end.eq(~fetched),
+                o.payload.bad.eq(~fetched & ~self.good),
+                o.payload.padding.eq(padding & (~fetched).replicate(2)),
+                o.valid.eq(fetched | (self.known & ~more)),
+            ]
+            with m.If(fetched):
+                m.d.sync += [next_.eq(next_ + 1), fetched.eq(0)]
+        with m.If(taken):
+            m.d.sync += [self.known.eq(0), count.eq(0), next_.eq(0), long.eq(0), padding.eq(0)]
         return m

@@ -38,6 +38,8 @@ from roslet.wire.rtps.qos import (
 from roslet.wire.rtps.submessage import FLAG_E
 
 WORD_BITS = 36
+CDR_LE = 0x0100
+"""The encapsulation header of our messages, as a word has it."""
 
 
 class Op(enum.IntEnum):
@@ -48,27 +50,25 @@ class Op(enum.IntEnum):
     PARTICIPANT = 2  # that word of the participant it goes to
     PROXY = 3  # that word of the proxy it goes to
     REGISTER = 4  # one of `Register`
-    ENTITY = 5  # the argument with the number of our endpoint in its third octet
-    LENGTH = 6  # the argument with the octets of the message added in its upper half
-    MESSAGE = 7  # the words of the user's message
+    WRITER = 5  # that word of our writer
+    ENTITY = 6  # the argument with the number of our endpoint in its third octet
+    LENGTH = 7  # the argument with the octets of the message added in its upper half
+    PADDING = 8  # the argument with the message's padding in its fourth octet
+    BITMAP = 9  # the argument with what is missing in its highest bits
+    MESSAGE = 10  # the words of the user's message
     END = 15
 
 
-REGISTER_BITS = 4
+REGISTER_BITS = 2
 
 
 class Register(enum.IntEnum):
-    """Values of the sender's."""
+    """Values of the sender's: numbers of messages, of each the lower word and the higher one."""
 
     FIRST = 0
     FIRST_HIGH = 1
-    LAST = 2
-    LAST_HIGH = 3
-    NUMBER = 4
-    NUMBER_HIGH = 5
-    COUNT = 6
-    BITMAP = 7
-    ENCAPSULATION = 8
+    NUMBER = 2
+    NUMBER_HIGH = 3
 
 
 Item = tuple[Op, int]
@@ -150,6 +150,7 @@ class Rom:
         body: Sequence[Item],
         flags: int = data.FLAG_D,
         length: bool = False,
+        number: int | None = None,
     ) -> list[Item]:
         fixed = _fixed(
             data.FIELDS,
@@ -157,8 +158,8 @@ class Rom:
                 "octetsToInlineQos": 16,
                 "readerId": ids[0],
                 "writerId": ids[1],
-                "writerSN.high": _register(Register.NUMBER_HIGH),
-                "writerSN.low": _register(Register.NUMBER),
+                "writerSN.high": _register(Register.NUMBER_HIGH) if number is None else 0,
+                "writerSN.low": _register(Register.NUMBER) if number is None else number,
             },
         )
         items = [*fixed, *body]
@@ -176,9 +177,9 @@ class Rom:
                 "writerId": ids[1],
                 "firstSN.high": _register(Register.FIRST_HIGH),
                 "firstSN.low": _register(Register.FIRST),
-                "lastSN.high": _register(Register.LAST_HIGH),
-                "lastSN.low": _register(Register.LAST),
-                "count": _register(Register.COUNT),
+                "lastSN.high": (Op.WRITER, tables.WRITER_LAST_HI),
+                "lastSN.low": (Op.WRITER, tables.WRITER_LAST),
+                "count": (Op.WRITER, tables.WRITER_COUNT),
             },
         )
         return _submessage(submessage.HEARTBEAT, 0, fixed)
@@ -187,7 +188,7 @@ class Rom:
         fixed = _fixed(ack_nack.FIELDS, {"readerId": ids[0], "writerId": ids[1]})
         # A set of 32 numbers from the one that is wanted on, in which those that are missing are marked; maybe none.
         state: list[Item] = [(Op.PROXY, tables.NEXT_HI), (Op.PROXY, tables.NEXT_LO), (Op.LITERAL, 32)]
-        state += [_register(Register.BITMAP), _register(Register.COUNT)]
+        state += [(Op.BITMAP, 0), (Op.WRITER, tables.WRITER_COUNT)]
         return _submessage(submessage.ACKNACK, ack_nack.FLAG_F, [*fixed, *state])
 
     def _participant(self, domain: int | None, lease: float, enclave: str) -> None:
@@ -206,7 +207,9 @@ class Rom:
             user_data=f"enclave={enclave};".encode(),
         )
         ids = guid.ENTITYID_SPDP_BUILTIN_PARTICIPANT_READER, guid.ENTITYID_SPDP_BUILTIN_PARTICIPANT_WRITER
-        self._add("participant", [*self._header, *self._data(ids, _words(own.emit(), self._references))])
+        # It never changes, nor does its number.
+        body = _words(own.emit(), self._references)
+        self._add("participant", [*self._header, *self._data(ids, body, number=1)])
 
     def _discovery(self, writer: bool, builtin: str) -> None:
         name = builtin.upper() + "S"
@@ -261,7 +264,7 @@ class Rom:
         key: Item = (Op.PROXY, tables.KEY)
         writer: Item = (Op.ENTITY, int.from_bytes(entity_id(-1, True), "little"))
         reader: Item = (Op.ENTITY, int.from_bytes(entity_id(-1, False), "little"))
-        body = [_register(Register.ENCAPSULATION), (Op.MESSAGE, 0)]
+        body: list[Item] = [(Op.PADDING, CDR_LE), (Op.MESSAGE, 0)]
         message = self._data((key, writer), body, length=True)
         beat = self._heartbeat((key, writer))
         to_group = self._data((guid.ENTITYID_UNKNOWN, writer), body, length=True)
@@ -278,7 +281,7 @@ class Rom:
                 "readerId": key,
                 "writerId": writer,
                 "gapStart.high": _register(Register.NUMBER_HIGH),
-                "gapStart.low": _register(Register.NUMBER),
+                "gapStart.low": (Op.PROXY, tables.ASK_FROM),
             },
         )
         base: list[Item] = [_register(Register.FIRST_HIGH), _register(Register.FIRST), (Op.LITERAL, 0)]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
 
 from roslet.gateware.rtps import tables
-from roslet.gateware.rtps.ports import READ_LATENCY
 from roslet.gateware.rtps.tables import PeerMap
 
 
@@ -26,44 +25,33 @@ def find_endpoint(
     """The states from SCAN to CHECK of an FSM: find participant `slot`'s writer, or reader, with entity id `key`, among
     those in `matched`, by `address` and `given` of a read port.
 
-    In state `then`, `found` says whether it is there; if so, it is `endpoint`, and `info` is its INFO. `found` must be low
-    before. Takes one cycle for each endpoint and three more, and six for each other endpoint with an equal id.
+    In state `then`, `found` says whether it is there; if so, it is `endpoint`, and `info` is its INFO. `found` and
+    `endpoint` must be zero before. Takes one cycle for each endpoint, and three more for each of those in `matched`.
     """
-    many = peers.endpoints
-    latency = READ_LATENCY + 1  # until it is known whether it is the one
-    step = Signal(range(many + latency))
-    # Whose word the memory gives next, gives now, and gave before
-    addressed, given_of, shown = (Signal(range(many)) for _ in range(3))
-    same = Signal()
-    reads = Signal(range(latency + 1))  # under way, since the scan began or went on
-    m.d.sync += same.eq((given == key) & matched.bit_select(given_of, 1))
-    last = shown == many - 1
+    same, last = Signal(), endpoint == peers.endpoints - 1
     with m.State("SCAN"):
-        m.d.comb += address.eq(peers.endpoint(step, tables.KEY))
-        m.d.sync += [step.eq(step + 1), addressed.eq(step), given_of.eq(addressed), shown.eq(given_of)]
-        with m.If(reads != latency):
-            m.d.sync += reads.eq(reads + 1)
-        with m.Elif(same):
-            m.d.sync += [endpoint.eq(shown), step.eq(shown + 1), reads.eq(0), shown.eq(shown)]
-            m.next = "INFO"
+        m.d.comb += address.eq(peers.endpoint(endpoint, tables.KEY))
+        with m.If(matched.bit_select(endpoint, 1)):
+            m.next = "ITS INFO"
         with m.Elif(last):
-            m.d.sync += [step.eq(0), reads.eq(0)]
             m.next = then
-    with m.State("INFO"):
-        m.d.comb += address.eq(peers.endpoint(shown, tables.INFO))
-        m.next = "INFO COMES"
-    with m.State("INFO COMES"):
+        with m.Else():
+            m.d.sync += endpoint.eq(endpoint + 1)
+    with m.State("ITS INFO"):
+        m.d.comb += address.eq(peers.endpoint(endpoint, tables.INFO))
+        m.next = "ITS KEY"
+    with m.State("ITS KEY"):
+        m.d.sync += same.eq(given == key)
         m.next = "CHECK"
     with m.State("CHECK"):
-        m.d.sync += info.eq(given)
-        m.next = "SCAN"
-        ours = (given[tables.INFO_SLOT : tables.INFO_SLOT + 8] == slot) & (
-            given[tables.INFO_WRITER] == writer
-        )
-        m.d.sync += found.eq(ours)
+        its_slot, is_writer = given[tables.INFO_SLOT : tables.INFO_SLOT + 8], given[tables.INFO_WRITER]
+        ours = same & (its_slot == slot) & (is_writer == writer)
+        m.d.sync += [info.eq(given), found.eq(ours)]
         with m.If(ours | last):
-            m.d.sync += step.eq(0)
             m.next = then
+        with m.Else():
+            m.d.sync += endpoint.eq(endpoint + 1)
+            m.next = "SCAN"
 
 
 def lowest(bits: Value) -> Value:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
 from amaranth.lib import wiring
+from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.compare import below
@@ -72,6 +73,9 @@ class Submessages(wiring.Component):
     number that we had or that was skipped; `drop_early`, a later number than the one wanted, from a writer that repeats it;
     `drop_busy`, no room (a reliable writer repeats it); `drop_invalid`, what RTPS calls so: a number below 1, a set of more
     than 256, octetsToInlineQos below 16, both data and key, no encapsulation header.
+
+    Words are taken at once, but for some eight cycles before DATA's content, and one for each bit of a GAP's first word. A
+    good end takes up to 18 cycles: what HEARTBEAT, GAP and ACKNACK say is looked at then.
     """
 
     def __init__(self, peers: PeerMap, own: OwnMap) -> None:
@@ -96,43 +100,35 @@ class Submessages(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         i, meta = self.i.stream, self.i.meta
-        word = i.payload.data
-        number = Mux(meta.flags[0], word, exchanged(word))
-        came, ended, good = Signal(), Signal(), Signal()
-        is_data = meta.id == submessage.DATA
+        word, little = i.payload.data, meta.flags[0]
+        number = Mux(little, word, exchanged(word))
+        came, ended, good, empty = Signal(), Signal(), Signal(), Signal()
+        is_data, is_gap, is_heartbeat, is_acknack = (Signal() for _ in range(4))
         m.d.comb += [
             came.eq(i.valid & ~i.payload.end),
             ended.eq(i.valid & i.payload.end),
             good.eq(ended & ~i.payload.bad),
+            empty.eq(word == 0),
+            is_data.eq(meta.id == submessage.DATA),
+            is_gap.eq(meta.id == submessage.GAP),
+            is_acknack.eq(meta.id == submessage.ACKNACK),
+            is_heartbeat.eq(~(is_data | is_gap | is_acknack)),
         ]
 
         # What is known of this submessage
-        sn, wanted = Signal(64), Signal(32)
-        wanted_high = Signal(32)
-        ahead = Signal(65)
-        after, after_high = Signal(32), Signal(32)  # the number behind `sn`
-        m.d.comb += [Cat(after, after_high).eq(sn + 1), ahead.eq(sn - Cat(wanted, wanted_high))]
-        # A cycle after either has changed: the number is the one that is wanted, or before it; it is one; what is wanted is
-        # known.
-        same, behind, legal, known = Signal(), Signal(), Signal(), Signal()
-        m.d.sync += [
-            same.eq(ahead == 0),
-            behind.eq(ahead[64]),
-            legal.eq(~sn[63] & (sn != 0)),
-            known.eq((wanted != 0) | (wanted_high != 0)),
-        ]
         for_any = Signal()  # reader id unknown
-        reader_number = Signal(8)  # from 0 on; in its entity id it is in the third octet, from 1 on
+        reader_number = Signal(8)  # as its entity id has it, from 1 on
         builtin, builtin_kind, spdp = Signal(), Signal(2), Signal()
         found = Signal()  # a proxy; `endpoint` is the user's
         endpoint = Signal(range(self._peers.endpoints))
         info = Signal(32)
-        skip = Signal(15)
-        place, one = Signal(6), Signal()  # of a set, the bit that is looked at
+        local = info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8]
+        ours = local[: max(1, (self._readers - 1).bit_length())]
+        skip = Signal(15)  # words, or the bits of a set
+        nothing, wrong = Signal(), Signal()  # of a number, the high word; a number that there is not
         gone, has_key = Signal(), Signal()
         reason = Signal(2)  # why DATA is not taken
         unmatched, old, early, busy = range(4)
-        last_lo = Signal(32)
         options = Signal(2)
         reliable = info[tables.INFO_RELIABLE] | builtin
         index = Mux(builtin, Cat(builtin_kind, meta.slot), endpoint)[: self._peers.index_bits]
@@ -144,26 +140,62 @@ class Submessages(wiring.Component):
             m.d.comb += [self.due.en.eq(1), self.due.proxy.eq(more_proxy)]
             m.d.sync += more.eq(0)
 
-        def at(what: int | Value) -> Value:
-            return Mux(
-                builtin,
-                self._peers.builtin(meta.slot, builtin_kind, what),
-                self._peers.endpoint(endpoint, what),
-            )
+        # Its numbers are put aside as they come, the high word first: one, or two. What was asked of `numbers` is in `kept`
+        # two cycles later, as with `peers`: of the first or the `second`, the low word, or the `high` one. Whatever comes is
+        # written at `place`, which is behind the numbers when they are asked for.
+        m.submodules.numbers = numbers = Memory(shape=32, depth=8, init=[], attrs={"ram_style": "block"})
+        aside, asked = numbers.write_port(), numbers.read_port()
+        place = Signal(3)
+        second, high = Signal(), Signal()
+        kept, step = Signal(32), Signal(3)
+        m.d.comb += [
+            aside.en.eq(1),
+            aside.addr.eq(place),
+            aside.data.eq(number),
+            asked.addr.eq(Cat(~high, second)),
+        ]
+        m.d.sync += kept.eq(asked.data)
+        # It is compared with what `peers` gives, the low words first. In JUDGE it is the number that is wanted, or before
+        # it; what is wanted is known; and the low word was compared with LAST, too.
+        difference, equal, begun = Signal(33), Signal(), Signal()
+        same, behind, known = Signal(), Signal(), Signal()
+        m.d.comb += equal.eq(difference[:32] == 0)
+        m.d.sync += [
+            difference.eq(kept - self.peers.data),
+            same.eq(equal & (same | begun)),
+            behind.eq(difference[32] | (equal & behind & ~begun)),
+        ]
+        # What is written is it and some more; what that carries over is added to the word written next.
+        some, total, carried = Signal(10), Signal(32), Signal()
+        m.d.comb += Cat(total, carried).eq(kept + Cat(some, some[-1].replicate(32 - len(some))))
+
+        # A word of the proxy is read or written
+        what = Signal(3)
+        at = Mux(
+            builtin,
+            self._peers.builtin(meta.slot, builtin_kind, what),
+            self._peers.endpoint(endpoint, what),
+        )
+        reading, putting = Signal(), Signal()
+        scanned = Signal.like(self.peers.addr)
+        m.d.comb += self.peers.addr.eq(Mux(reading, at, scanned))
+        with m.If(putting):
+            m.d.comb += [self.write.en.eq(1), self.write.addr.eq(at), self.write.data.eq(total)]
 
         def take(state: str) -> None:
             """Take a word and go on; a body that ends here is dropped."""
             with m.If(came):
                 m.d.comb += i.ready.eq(1)
+                m.d.sync += skip.eq(skip - 1)
                 m.next = state
             with m.If(ended):
                 m.next = "INVALID"
 
-        def put(what: int, value: Value) -> list[object]:
-            return [self.write.en.eq(1), self.write.addr.eq(at(what)), self.write.data.eq(value)]
+        def put(word: int) -> list[object]:
+            return [putting.eq(1), what.eq(word)]
 
         m.d.comb += [
-            self.user.meta.reader.eq(info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8]),
+            self.user.meta.reader.eq(local),
             self.user.stream.payload.data.eq(word),
             self.discovery.stream.payload.eq(i.payload),
             self.discovery.meta.kind.eq(Mux(spdp, ports.PARTICIPANTS, builtin_kind - 1)),
@@ -175,15 +207,21 @@ class Submessages(wiring.Component):
 
         with m.FSM():
             with m.State("IDLE"):
-                m.d.sync += [builtin.eq(0), spdp.eq(0), found.eq(0), gone.eq(0), has_key.eq(0), skip.eq(0)]
+                m.d.sync += [
+                    *(one.eq(0) for one in (builtin, spdp, found, gone, has_key, wrong)),
+                    *(one.eq(0) for one in (place, second, some)),
+                    reason.eq(unmatched),
+                ]
                 with m.If(ended):
                     m.next = "INVALID"
                 with m.Elif(i.valid):
                     m.next = "READER"
                     with m.If(is_data):
                         m.next = "DATA"
+                    with m.If(is_acknack):
+                        m.next = "FIND"
             with m.State("DATA"):
-                to_qos = Mux(meta.flags[0], word[16:32], Cat(word[24:32], word[16:24]))
+                to_qos = Mux(little, word[16:32], Cat(word[24:32], word[16:24]))
                 take("READER")
                 m.d.sync += skip.eq(to_qos[2:])
                 both = meta.flags & (data_submessage.FLAG_D | data_submessage.FLAG_K)
@@ -197,112 +235,58 @@ class Submessages(wiring.Component):
                 ):
                     m.next = "INVALID"
             with m.State("READER"):
-                m.d.sync += [
-                    for_any.eq(word == 0),
-                    reader_number.eq(word[16:24] - 1),
-                ]
-                take("WRITER")
-                with m.If(came & (meta.id == submessage.ACKNACK)):
-                    m.d.comb += i.ready.eq(0)
-                    m.next = "FIND"
-            with m.State("WRITER"):
+                m.d.sync += [for_any.eq(empty), reader_number.eq(word[16:24])]
+                take("FIND")
+            with m.State("FIND"):  # `word` is the id of the peer's endpoint
+                m.d.sync += endpoint.eq(0)
                 with m.If(came):
-                    m.next = "FIND"
+                    m.next = "SCAN"
+                    with m.If(~meta.known):
+                        m.next = "FOUND"
+                    self._builtins(m, spdp, builtin, builtin_kind, found)
                 with m.If(ended):
                     m.next = "INVALID"
-            writer = meta.id != submessage.ACKNACK  # it is from one
-            with m.State("FIND"):  # `word` is the id of the peer's endpoint
-                m.next = "SCAN"
-                with m.If(~meta.known):
-                    m.next = "FOUND"
-                with m.If(word == _SPDP_WRITER):
-                    m.d.sync += spdp.eq(1)
-                    m.next = "FOUND"
-                for value, kind in _BUILTINS.items():
-                    with m.If((word == value) & (writer == kind // tables.PUBLICATIONS_WRITER)):
-                        m.d.sync += [builtin.eq(1), builtin_kind.eq(kind), found.eq(meta.known)]
-                        m.next = "FOUND"
             find_endpoint(
                 m,
                 self._peers,
-                self.peers.addr,
+                scanned,
                 self.peers.data,
                 self.matched,
                 word,
                 meta.slot,
-                writer,
+                ~is_acknack,
                 endpoint,
                 info,
                 found,
                 "FOUND",
             )
             with m.State("FOUND"):  # the word that was looked for is there still
-                m.d.comb += [i.ready.eq(1), self.peers.addr.eq(at(tables.NEXT_LO))]
-                m.next = "LOAD"
-                with m.If(meta.id == submessage.ACKNACK):
-                    m.next = "LOCAL WRITER"
-            with m.State("LOCAL WRITER"):  # one reader of a peer matches one writer of ours
-                take("SN HIGH")
-            with m.State("LOAD"):
-                m.d.comb += self.peers.addr.eq(at(tables.NEXT_HI))
-                m.next = "LOAD LOW"
-            with m.State("LOAD LOW"):
-                m.d.comb += self.peers.addr.eq(at(tables.LAST))
-                m.d.sync += wanted.eq(self.peers.data)
-                m.next = "LOAD HIGH"
-            with m.State("LOAD HIGH"):
-                m.d.sync += wanted_high.eq(self.peers.data)
-                m.next = "LOAD LAST"
-            with m.State("LOAD LAST"):
-                m.d.sync += last_lo.eq(self.peers.data)
-                m.next = "SN HIGH"
-            with m.State("SN HIGH"):
-                m.d.sync += sn[32:].eq(number)
-                take("SN LOW")
-            with m.State("SN LOW"):
-                m.d.sync += sn[:32].eq(number)
-                with m.Switch(meta.id):
-                    with m.Case(submessage.DATA):
-                        take("EXTRA")
-                    with m.Case(submessage.ACKNACK):
-                        take("ACKNACK BITS")
-                    with m.Default():
-                        take("FIRST")
+                take("NUMBERS")
+                with m.If(is_acknack):
+                    m.next = "WRITER"
+            with m.State("WRITER"):  # one reader of a peer matches one writer of ours
+                take("NUMBERS")
+            with m.State("NUMBERS"):
+                take("NUMBERS")
+                with m.If(came):
+                    m.d.sync += place.eq(place + 1)
+                    with m.If(~place[0]):
+                        m.d.sync += [nothing.eq(empty), wrong.eq(wrong | number[31])]
+                    with m.Else():
+                        m.d.sync += wrong.eq(wrong | (nothing & empty & ~place[1] & ~is_acknack))
+                        with m.If(is_data):
+                            m.next = "EXTRA"
+                        with m.Elif(place[1] | is_acknack):
+                            m.next = "SET"
             # -- DATA
             with m.State("EXTRA"):
-                with m.If(skip != TO_INLINE_QOS // 4):
-                    with m.If(came):
-                        m.d.sync += skip.eq(skip - 1)
+                with m.If(skip != 0):
                     take("EXTRA")
                 with m.Elif(meta.flags & data_submessage.FLAG_Q):
                     m.next = "QOS"
                 with m.Else():
-                    m.next = "JUDGE"
-            self._inline_qos(m, number, take, gone, has_key, skip)
-            with m.State("JUDGE"):
-                local = info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8]
-                room = self.room.bit_select(local[: max(1, (self._readers - 1).bit_length())], 1)
-                for_us = for_any | (reader_number == local)
-                m.next = "DROP"
-                with m.If(~legal):
-                    m.next = "INVALID"
-                with m.Elif(spdp):
-                    m.next = "DISCOVERY"
-                with m.Elif(~found | (~builtin & ~for_us)):
-                    m.d.sync += reason.eq(unmatched)
-                with m.Elif(behind & known):
-                    m.d.sync += reason.eq(old)
-                with m.Elif(reliable & ~same & known):
-                    m.d.sync += reason.eq(early)
-                with m.Elif(builtin):
-                    m.next = "DISCOVERY"
-                with m.Elif(~(meta.flags & data_submessage.FLAG_D).any()):
-                    # It was disposed, or has no content: there is nothing to tell.
-                    m.next = "ADVANCE"
-                with m.Elif(~room):
-                    m.d.sync += reason.eq(busy)
-                with m.Else():
-                    m.next = "ENCAPSULATION"
+                    m.next = "COMPARE"
+            self._inline_qos(m, take, gone, has_key, skip)
             with m.State("ENCAPSULATION"):
                 m.d.sync += [
                     self.user.meta.representation.eq(Cat(word[8:16], word[:8])),
@@ -322,32 +306,124 @@ class Submessages(wiring.Component):
                 with m.If(~i.payload.end):
                     m.d.comb += i.ready.eq(user.ready)
                 with m.Elif(i.valid & user.ready):  # the end stays until it has been dealt with
-                    m.next = "ADVANCE"
-            with m.State("ADVANCE"):
-                m.d.comb += i.ready.eq(came)
-                m.d.sync += [wanted.eq(after), wanted_high.eq(after_high)]
-                with m.If(good):
-                    m.next = "WRITE LOW"
-                with m.Elif(ended):
-                    m.next = "INVALID"
-            with m.State("WRITE LOW"):
-                m.d.comb += put(tables.NEXT_LO, wanted)
-                m.next = "WRITE HIGH"
-            with m.State("WRITE HIGH"):
-                m.d.comb += put(tables.NEXT_HI, wanted_high)
-                m.d.comb += i.ready.eq(1)
-                # Of what a heartbeat told of, there is more.
-                with m.If(is_data & reliable & ~(last_lo - wanted)[31]):
-                    m.d.sync += [more.eq(1), more_proxy.eq(proxy)]
-                m.next = "IDLE"
+                    m.next = "REST"
             with m.State("DISCOVERY"):
                 m.d.comb += self.discovery.stream.valid.eq(i.valid)
                 with m.If(~i.payload.end):
                     m.d.comb += i.ready.eq(self.discovery.stream.ready)
                 with m.Elif(i.valid & self.discovery.stream.ready):
-                    m.next = "ADVANCE"
+                    m.next = "REST"
                     with m.If(spdp):
                         m.next = "TAKEN"
+            # -- sets of numbers; a heartbeat's count is in the place of their size
+            with m.State("SET"):
+                take("REST")
+                m.d.sync += skip.eq(number[:9])
+                with m.If(came & ~is_heartbeat):
+                    with m.If(is_gap):
+                        m.next = "RUN"
+                    with m.If(~below(number, MAX_BITS) & (number != MAX_BITS)):
+                        m.next = "INVALID"
+            with m.State("RUN"):  # ones that the first word begins with; what is behind is asked for again
+                bit = word.bit_select(Cat(~some[:3], some[3:5] ^ little.replicate(2)), 1)
+                with m.If(came & (skip != 0) & ~some[5] & bit):
+                    m.d.sync += [some.eq(some + 1), skip.eq(skip - 1)]
+                with m.Elif(i.valid):
+                    m.next = "REST"
+            # -- what is left of it is skipped, and at a good end it is done
+            with m.State("REST"):
+                m.d.comb += i.ready.eq(came)
+                with m.If(ended):
+                    m.next = "COMPARE"
+                    with m.If(is_data):
+                        m.d.sync += some.eq(1)
+                        m.next = "PUT NEXT"
+                    with m.If(is_acknack):
+                        m.d.sync += some.eq(skip - 1)
+                        m.next = "PUT LAST"
+                    with m.If(~found):
+                        m.next = "DROP"
+                    with m.If(wrong | i.payload.bad):
+                        m.next = "INVALID"
+            with m.State("COMPARE"):  # what is read in a step is there in the next but one
+                m.d.comb += [
+                    reading.eq(1),
+                    what.eq(Cat(step[:2], 1)),
+                    high.eq(step == 1),
+                    begun.eq(step == 3),
+                ]
+                m.d.sync += step.eq(step + 1)
+                with m.If(step[1]):
+                    m.d.sync += known.eq((known & step[0]) | (self.peers.data != 0))
+                with m.If(step == 4):
+                    m.d.sync += step.eq(0)
+                    m.next = "JUDGE"
+                    with m.If(is_gap):
+                        m.next = "JUDGE GAP"
+                    with m.If(is_heartbeat):
+                        m.next = "JUDGE HEARTBEAT"
+            told = Signal()  # a heartbeat told of a number behind this one
+            with m.State("JUDGE"):
+                room = self.room.bit_select(ours, 1)
+                m.d.sync += told.eq(difference[31])
+                m.next = "DROP"
+                with m.If(wrong):
+                    m.next = "INVALID"
+                with m.Elif(spdp):
+                    m.next = "DISCOVERY"
+                with m.Elif(~found | (~builtin & ~for_any & (reader_number != ours + 1))):
+                    m.d.sync += reason.eq(unmatched)
+                with m.Elif(behind & known):
+                    m.d.sync += reason.eq(old)
+                with m.Elif(reliable & ~same & known):
+                    m.d.sync += reason.eq(early)
+                with m.Elif(builtin):
+                    m.next = "DISCOVERY"
+                with m.Elif(~(meta.flags & data_submessage.FLAG_D).any()):
+                    # It was disposed, or has no content: there is nothing to tell.
+                    m.next = "REST"
+                with m.Elif(~room):
+                    m.d.sync += reason.eq(busy)
+                with m.Else():
+                    m.next = "ENCAPSULATION"
+            with m.State("JUDGE GAP"):  # it must begin at what is wanted or before
+                m.d.sync += second.eq(1)
+                m.next = "TAKEN"
+                with m.If(~second & known & (same | behind)):
+                    m.next = "COMPARE"
+                with m.If(second & ~behind):
+                    m.next = "PUT NEXT"
+            with m.State("JUDGE HEARTBEAT"):  # by its first, then by its last
+                m.next = "COMPARE"
+                with m.If(second):
+                    m.d.comb += put(tables.LAST)
+                    m.d.comb += self.due.en.eq((~(meta.flags & FLAG_F).any() | ~behind) & reliable)
+                    m.next = "TAKEN"
+                with m.Elif(~known):
+                    m.d.sync += [second.eq(1), some.eq(1)]
+                    m.next = "PUT NEXT"
+                with m.Elif(behind):
+                    m.d.sync += second.eq(1)
+                with m.Else():
+                    m.next = "PUT NEXT"
+            # What is kept of a peer's reader lies where that of a writer does: ACKED, ASK_FROM and ASK_TO.
+            with m.State("PUT LAST"):
+                m.d.comb += put(tables.LAST)
+                m.d.sync += [some.eq(0), step.eq(2)]
+                m.next = "PUT NEXT"
+            with m.State("PUT NEXT"):
+                m.d.comb += [high.eq(step == 1), putting.eq(step[1]), what.eq(Cat(step[0], 0, 1))]
+                m.d.sync += step.eq(step + 1)
+                with m.If(step == 2):
+                    m.d.sync += some.eq(carried)
+                with m.If(step == 3):
+                    m.d.comb += self.due.en.eq(is_acknack & ((skip != 0) | ~(meta.flags & FLAG_F).any()))
+                    m.d.sync += [step.eq(0), second.eq(1)]
+                    m.next = "TAKEN"
+                    with m.If(is_heartbeat):
+                        m.next = "COMPARE"
+                    with m.If(is_data & reliable & told):
+                        m.d.sync += [more.eq(1), more_proxy.eq(proxy)]
             with m.State("TAKEN"):
                 m.d.comb += i.ready.eq(1)
                 m.next = "IDLE"
@@ -362,160 +438,63 @@ class Submessages(wiring.Component):
                         self.drop_early.eq(reason == early),
                         self.drop_busy.eq(reason == busy),
                     ]
-                    with m.If(found & (reason == early)):
+                    with m.If(reason == early):
                         m.d.sync += [more.eq(1), more_proxy.eq(proxy)]
             with m.State("INVALID"):
                 m.d.comb += i.ready.eq(1)
                 with m.If(ended):
                     m.d.comb += self.drop_invalid.eq(~i.payload.bad)
                     m.next = "IDLE"
-            # -- HEARTBEAT and GAP: two numbers
-            with m.State("FIRST"):
-                m.next = "LAST HIGH"
-            with m.State("LAST HIGH"):
-                # What is kept aside is the lower first; a GAP's list has its base here.
-                with m.If(~legal):
-                    m.next = "INVALID"
-                with m.Else():
-                    # A GAP must begin here or before, and then moves what is wanted to where it ends; a HEARTBEAT at once.
-                    with m.If((meta.id == submessage.HEARTBEAT) & known & ~behind):
-                        m.d.sync += [wanted.eq(sn), wanted_high.eq(sn[32:])]
-                    m.d.sync += skip[0].eq(same | behind)
-                    with m.If(came):
-                        m.d.sync += sn[32:].eq(number)
-                    take("LAST LOW")
-            with m.State("LAST LOW"):
-                m.d.sync += [sn[:32].eq(number), place.eq(0)]
-                take("COUNT")
-                with m.If(came & (meta.id == submessage.GAP)):
-                    m.next = "GAP BASE"
-            with m.State("COUNT"):
-                m.d.sync += last_lo.eq(sn[:32])
-                with m.If(~known):
-                    m.d.sync += [wanted.eq(after), wanted_high.eq(after_high)]
-                take("COUNTED")
-                with m.If(sn[63]):
-                    m.next = "INVALID"
-            with m.State("COUNTED"):
-                m.next = "HEARD"
-            with m.State("HEARD"):
-                missing = ~behind
-                with m.If(came | (ended & ~found)):
-                    m.d.comb += i.ready.eq(1)
-                with m.If(ended & ~found):
-                    m.d.comb += self.drop_unmatched.eq(good)
-                    m.next = "IDLE"
-                with m.Elif(good):
-                    m.d.comb += put(tables.LAST, last_lo)
-                    m.d.comb += self.due.en.eq((~(meta.flags & FLAG_F).any() | missing) & reliable)
-                    m.next = "WRITE LOW"
-                with m.Elif(ended):
-                    m.next = "INVALID"
-            # -- sets of numbers, from `sn` on
-            with m.State("GAP BASE"):
-                m.next = "GAP BITS"
-            with m.State("GAP BITS"):
-                with m.If(skip[0] & known & ~behind):
-                    m.d.sync += [wanted.eq(sn), wanted_high.eq(sn[32:])]
-                self._bits(m, number, came, ended, skip, "GAP NEXT")
-                with m.If(sn[63]):
-                    m.next = "INVALID"
-            with m.State("GAP SET"):
-                # The run of ones at the beginning of the first word, a bit in two cycles; what is behind is asked for again.
-                with m.If(came & (skip != 0) & ~place[5] & one & same):
-                    m.d.sync += [
-                        Cat(sn, wanted, wanted_high).eq(Cat(after, after_high, after, after_high)),
-                        place.eq(place + 1),
-                        skip.eq(skip - 1),
-                    ]
-                    m.next = "GAP NEXT"
-                with m.Else():
-                    m.d.comb += i.ready.eq(came)
-                    with m.If(came):
-                        m.d.sync += skip.eq(0)
-                    with m.If(ended & ~found):
-                        m.d.comb += [i.ready.eq(1), self.drop_unmatched.eq(good)]
-                        m.next = "IDLE"
-                    with m.Elif(good):
-                        m.next = "WRITE LOW"
-                    with m.Elif(ended):
-                        m.next = "INVALID"
-            with m.State("GAP NEXT"):
-                m.d.sync += one.eq(number.bit_select(~place[:5], 1))
-                with m.If(i.valid):
-                    m.next = "GAP SET"
-            with m.State("ACKNACK BITS"):
-                self._bits(m, number, came, ended, skip, "ACKNACK SET")
-            with m.State("ACKNACK SET"):
-                m.d.comb += i.ready.eq(came)
-                with m.If(ended):
-                    m.next = "INVALID"
-                with m.If(good & found):
-                    m.d.comb += put(tables.ACKED, sn[:32])
-                    m.next = "ASK FROM"
-                with m.Elif(good):
-                    m.d.comb += [i.ready.eq(1), self.drop_unmatched.eq(1)]
-                    m.next = "IDLE"
-            with m.State("ASK FROM"):
-                m.d.comb += put(tables.ASK_FROM, sn[:32])
-                m.d.sync += wanted.eq(sn[:32] + (skip[:9] - 1))
-                m.next = "ASK TO"
-            with m.State("ASK TO"):
-                m.d.comb += put(tables.ASK_TO, wanted)
-                m.d.comb += [self.due.en.eq((skip != 0) | ~(meta.flags & FLAG_F).any()), i.ready.eq(1)]
-                m.next = "IDLE"
         return m
 
+    def _builtins(self, m: Module, spdp: Value, builtin: Value, kind: Value, found: Value) -> None:
+        """Whether the word is the id of an endpoint of discovery, of a reader in an ACKNACK and of a writer elsewhere."""
+        word, meta = self.i.stream.payload.data, self.i.meta
+        with m.If(word == _SPDP_WRITER):
+            m.d.sync += spdp.eq(1)
+            m.next = "FOUND"
+        for value, number in _BUILTINS.items():
+            is_writer = number >= tables.PUBLICATIONS_WRITER
+            with m.If((word == value) & ((meta.id != submessage.ACKNACK) == is_writer)):
+                m.d.sync += [builtin.eq(1), kind.eq(number), found.eq(meta.known)]
+                m.next = "FOUND"
+
     def _inline_qos(
-        self, m: Module, number: Value, take: Callable[[str], None], gone: Value, has_key: Value, skip: Value
+        self, m: Module, take: Callable[[str], None], gone: Value, has_key: Value, skip: Value
     ) -> None:
         """STATUS_INFO and KEY_HASH; whatever else is there is skipped."""
-        i, flags = self.i.stream, self.i.meta.flags
+        i, little = self.i.stream, self.i.meta.flags[0]
         word = i.payload.data
         came = i.valid & ~i.payload.end
-        pid = Mux(flags[0], word[:16], Cat(word[8:16], word[:8]))
-        length = Mux(flags[0], word[16:32], Cat(word[24:32], word[16:24]))
+        pid = Mux(little, word[:16], Cat(word[8:16], word[:8]))
+        length = Mux(little, word[16:32], Cat(word[24:32], word[16:24]))
         is_status, is_key = Signal(), Signal()
-        at = Signal(2)
         with m.State("QOS"):
+            take("QOS VALUE")
             m.d.sync += [
                 is_status.eq(pid == PID_STATUS_INFO),
                 is_key.eq((pid == PID_KEY_HASH) & (length == 16)),
-                skip.eq((length + 3)[2:]),
-                at.eq(0),
+                skip.eq(length[2:]),
             ]
-            take("QOS VALUE")
+            with m.If(came & (length[:2] != 0)):
+                m.next = "QOS ROUND"
             with m.If(came & (pid == PID_SENTINEL)):
-                m.next = "JUDGE"
+                m.next = "COMPARE"
+        with m.State("QOS ROUND"):  # a word more, of what means nothing to us
+            take("QOS VALUE")
+            m.d.sync += [is_status.eq(0), skip.eq(skip)]
         with m.State("QOS VALUE"):
             with m.If(skip == 0):
                 m.next = "QOS"
             with m.Else():
                 take("QOS VALUE")
                 with m.If(came):
-                    m.d.sync += [
-                        skip.eq(skip - 1),
-                        at.eq(at + 1),
-                        is_status.eq(0),
-                        has_key.eq(has_key | is_key),
-                    ]
+                    m.d.sync += [is_status.eq(0), has_key.eq(has_key | is_key)]
                     with m.If(is_status):  # four octets, whose last has the flags, in whatever byte order
                         m.d.sync += gone.eq((word[24:32] & (STATUS_DISPOSED | STATUS_UNREGISTERED)).any())
                     with m.If(is_key):
                         m.d.comb += [
                             self.write.en.eq(1),
-                            self.write.addr.eq(self._peers.scratch((tables.SCRATCH_KEY + at)[:4])),
+                            self.write.addr.eq(self._peers.scratch((tables.SCRATCH_KEY + 4 - skip)[:4])),
                             self.write.data.eq(word),
                         ]
-
-    def _bits(self, m: Module, number: Value, came: Value, ended: Value, skip: Value, state: str) -> None:
-        """How many bits a set has, into `skip`."""
-        i = self.i.stream
-        with m.If(came):
-            m.d.comb += i.ready.eq(1)
-            m.d.sync += skip.eq(number[:9])
-            m.next = state
-            with m.If(~below(number, MAX_BITS + 1)):
-                m.next = "INVALID"
-        with m.If(ended):
-            m.next = "INVALID"

@@ -44,6 +44,9 @@ INFO_WRITER, INFO_RELIABLE = 16, 17
 # Bits of USER_PORT and PORT, beside the port: the group is as good; of USER_PORT, it is in our subnet
 PORT_GROUP, PORT_NEAR = 16, 17
 
+LEASE_BITS = 17
+"""Of a lease's seconds: of one of 18 hours and more there are kept the highest of these, set, and those below. What is LEFT
+has one bit more: it is less than nothing."""
 MAX_PEERS = 128
 """Their numbers have eight bits, with one to spare."""
 EVERYTHING = 0x7FFFFFFF
@@ -56,7 +59,7 @@ def _bits(count: int) -> int:
     return max(1, (count - 1).bit_length())
 
 
-def _aligned(sizes: Sequence[int]) -> tuple[list[int], int]:
+def aligned(sizes: Sequence[int]) -> tuple[list[int], int]:
     """Where parts of these sizes, powers of two, begin, each aligned to its size; and where they end."""
     order = sorted(range(len(sizes)), key=lambda n: -sizes[n])
     starts, at = [0] * len(sizes), 0
@@ -81,7 +84,7 @@ class PeerMap:
             PROXY << self.endpoint_bits,
             SCRATCH,
         )
-        (self._participants, self._builtins, self._endpoints, self._scratch), self.depth = _aligned(sizes)
+        (self._participants, self._builtins, self._endpoints, self._scratch), self.depth = aligned(sizes)
         self.address_bits = _bits(self.depth)
         self.index_bits = max(2 + self.slot_bits, self.endpoint_bits)
         self.proxy_bits = self.index_bits + 1
@@ -142,12 +145,14 @@ class Local:
 
 
 # Of our own memory
-OWN_PREFIX, OWN_IP, META_PORT_OWN, USER_PORT_OWN = 0, 3, 4, 5
-SPDP_SN, HEARTBEAT_COUNT, ACKNACK_COUNT = 6, 7, 8
-PUBLICATIONS, SUBSCRIPTIONS = 9, 10  # the first sequence number of what discovery says now
-OWN_WORDS = 16
-WRITER_LAST, WRITER_LAST_HI, WRITER_COUNT, WRITER_FIRST = 0, 1, 2, 3
+OWN_PREFIX, OWN_IP, META_PORT_OWN, USER_PORT_OWN, ZERO = 0, 3, 4, 5, 6
+OWN_WORDS = 8
+# Of a writer: the number of its last message; how many before that are kept, -1 where there is none; and the count of the
+# heartbeats that it sends, and of the ACKNACKs of our reader with the same number: each needs one that rises, no more
+WRITER_LAST, WRITER_LAST_HI, WRITER_OLDEST, WRITER_COUNT = 0, 1, 2, 3
 WRITER = 4
+NOTHING = 0xFFFFFFFF
+"""As WRITER_OLDEST."""
 
 
 class OwnMap:
@@ -165,11 +170,11 @@ class OwnMap:
         self.local_bits = _bits(most)
         sizes = (
             OWN_WORDS,
-            WRITER << self.local_bits,
+            WRITER << self.local_bits + 1,
             1 << (self.text_bits + self.local_bits + 2),
             *(self.stride(local) * local.depth for local in self.writers),
         )
-        starts, self.depth = _aligned(sizes)
+        starts, self.depth = aligned(sizes)
         self._own, self._writers, self._texts = starts[:3]
         self.samples = starts[3:]
         """Where the samples of each writer begin."""
@@ -189,13 +194,14 @@ class OwnMap:
     def own(self, word: int) -> int:
         return self._own + word
 
-    def writer(self, number: Value, word: int) -> Value:
-        """A word of a writer."""
-        low = Cat(Const(word, 2), _number(number, self.local_bits))
+    def writer(self, number: Value, word: int | Value, builtin: int | Value = 0) -> Value:
+        """A word of a writer: of the user's with that number; or of discovery's, of which 0 tells of our writers and 1 of
+        our readers."""
+        low = Cat(_number(word, 2), _number(number, self.local_bits), _number(builtin, 1))
         return Cat(low, Const(self._writers >> len(low), self.address_bits - len(low)))
 
-    def writer_address(self, number: int, word: int) -> int:
-        return self._writers + WRITER * number + word
+    def writer_address(self, number: int, word: int, builtin: bool = False) -> int:
+        return self._writers + (WRITER << self.local_bits) * builtin + WRITER * number + word
 
     def text(self, reader: Value, is_type: Value, number: Value, word: Value) -> Value:
         """A word of a topic's name, or of its type's."""
@@ -214,8 +220,11 @@ class OwnMap:
             for n in range(0, len(octets), 4):
                 words[self.own(at) + n // 4] = int.from_bytes(octets[n : n + 4], "little")
         words[self.own(META_PORT_OWN)], words[self.own(USER_PORT_OWN)] = meta_port, user_port
-        words[self.own(PUBLICATIONS)] = words[self.own(SUBSCRIPTIONS)] = 1
+        for number in range(len(self.writers)):
+            words[self.writer_address(number, WRITER_OLDEST)] = NOTHING
         for reader, locals_ in enumerate((self.writers, self.readers)):
+            words[self.writer_address(reader, WRITER_LAST, builtin=True)] = len(locals_)
+            words[self.writer_address(reader, WRITER_OLDEST, builtin=True)] = (len(locals_) - 1) & NOTHING
             for number, local in enumerate(locals_):
                 for is_type, text in enumerate((local.topic, local.type_name)):
                     octets = text.encode() + b"\0"

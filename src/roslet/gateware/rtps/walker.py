@@ -36,7 +36,7 @@ class Walker(wiring.Component):
     once it is known that the whole datagram is good: who has acted upon it need take nothing back. Where the datagram is
     bad, or ends within a submessage, so does the body.
 
-    Throughput one word a cycle; a sender's prefix, and every INFO_SRC, takes 3 * (participants + 3) cycles.
+    Throughput one word a cycle; a sender's prefix, and every INFO_SRC, takes 3 * (participants + 2) cycles.
 
     Of good datagrams `drop_not_rtps`, `drop_version` (not 2.x), `drop_truncated` (ends within the header, or within a
     submessage by its length) drop what follows, as 8.3.4.1 has it; `drop_fragment` counts submessages that carry fragments.
@@ -69,11 +69,17 @@ class Walker(wiring.Component):
         m = Module()
         i, o = self.i.stream, self.o.stream
         word = i.payload.data
-        came = Signal()  # a word, not the end
-        m.d.comb += came.eq(i.valid & ~i.payload.end)
+        came, ended, taken = Signal(), Signal(), Signal()  # a word, not the end; the end; a word, now
+        m.d.comb += [
+            came.eq(i.valid & ~i.payload.end),
+            ended.eq(i.valid & i.payload.end),
+            taken.eq(came & i.ready),
+        ]
 
         kind, flags = Signal(8), Signal(8)
-        left = Signal(15)  # words of the submessage, less one: after the last its highest bit is set
+        # Words of the submessage, less one: after the last its highest bit is set
+        left, less = Signal(15), Signal(15)
+        length, begun = Signal(16), Signal()  # what `word` says if it is the header of one; it is that
         to_end = Signal()  # it goes to the end of the message
         tail = Signal(2)  # octets by which its length misses whole words
         for_us = Signal()
@@ -86,7 +92,11 @@ class Walker(wiring.Component):
             self.o.meta.slot.eq(slot),
             o.payload.data.eq(word),
             self.heard_slot.eq(slot),
+            length.eq(Mux(word[8], word[16:32], Cat(word[24:32], word[16:24]))),
+            less.eq(Mux(begun, length[2:], left) + (~begun | (length[:2] == 0)).replicate(len(left))),
         ]
+        with m.If(taken):
+            m.d.sync += left.eq(less)
 
         with m.FSM() as fsm:
             m.d.comb += self.idle.eq(fsm.ongoing("START"))
@@ -95,7 +105,7 @@ class Walker(wiring.Component):
                 with m.If(i.valid & ~self.hold):
                     m.next = "PROTOCOL"
             with m.State("PROTOCOL"):
-                with m.If(i.valid & i.payload.end):
+                with m.If(ended):
                     m.next = "SHORT"
                 with m.Elif(i.valid):
                     m.d.comb += i.ready.eq(1)
@@ -103,30 +113,28 @@ class Walker(wiring.Component):
                     with m.If(word != _RTPS):
                         m.next = "NOT RTPS"
             with m.State("VERSION"):
-                with m.If(i.valid & i.payload.end):
+                with m.If(ended):
                     m.next = "SHORT"
                 with m.Elif(i.valid):
                     m.d.comb += i.ready.eq(1)
                     m.next = "PREFIX"
                     with m.If(word[:8] != PROTOCOLVERSION_MAJOR):
                         m.next = "OTHER VERSION"
-            self._prefix(m, word, came, at, slot, is_known)
+            self._prefix(m, came, ended, at, slot, is_known)
             with m.State("SUBMESSAGE"):
-                little = word[8]
-                length = Mux(little, word[16:32], Cat(word[24:32], word[16:24]))
                 m.d.sync += at.eq(0)
+                m.d.comb += begun.eq(1)
                 # It may have said before that it departs.
                 m.d.sync += is_known.eq(is_known & self.alive.bit_select(slot, 1))
-                with m.If(i.valid & i.payload.end):
+                with m.If(ended):
                     m.next = "END"
                 with m.Elif(i.valid):
                     m.d.comb += i.ready.eq(1)
                     m.d.sync += [
                         kind.eq(word[:8]),
                         flags.eq(word[8:16]),
-                        left.eq((length - 1)[2:]),
                         tail.eq(-length[:2]),
-                        to_end.eq(length == 0),
+                        to_end.eq(less[-1]),
                     ]
                     m.next = "SKIP"
                     with m.Switch(word[:8]):
@@ -144,32 +152,27 @@ class Walker(wiring.Component):
                 with m.If((at == 0) & self._fewer(left, _PREFIX_WORDS) & ~to_end):
                     m.next = "SKIP"
                 with m.Else():
-                    self._compare_own(m, came, at, left, for_us)
-                    with m.If(i.valid & i.payload.end):
-                        m.next = "SHORT"
+                    self._compare_own(m, came, ended, at, for_us)
             with m.State("SOURCE"):
                 with m.If((at == 0) & self._fewer(left, _INFO_SRC_WORDS) & ~to_end):
                     m.next = "SKIP"
                 with m.Elif(came):
                     m.d.comb += i.ready.eq(1)
-                    m.d.sync += [left.eq(left - 1), at.eq(at + 1)]
+                    m.d.sync += at.eq(at + 1)
                     with m.If(at == _INFO_SRC_BEFORE - 1):
-                        m.d.sync += [at.eq(0), left.eq(left - 1 - _PREFIX_WORDS)]
+                        m.d.sync += at.eq(0)
                         m.next = "PREFIX"
-                with m.If(i.valid & i.payload.end):
+                with m.If(ended):
                     m.next = "SHORT"
             with m.State("BODY"):
-                ended = left[-1] & ~to_end
-                with m.If(ended):
+                with m.If(left[-1] & ~to_end):
                     m.next = "BODY END"
-                with m.Elif(i.valid & i.payload.end):
+                with m.Elif(ended):
                     m.next = "BODY END"
                     with m.If(~to_end):
                         m.next = "BODY SHORT"
                 with m.Else():
                     m.d.comb += [o.valid.eq(i.valid), i.ready.eq(o.ready)]
-                    with m.If(i.valid & o.ready):
-                        m.d.sync += left.eq(left - 1)
             with m.State("BODY END"):
                 padding = Mux(to_end, i.payload.padding, tail)
                 missing = ~to_end & i.payload.end & (i.payload.padding > tail)
@@ -193,13 +196,12 @@ class Walker(wiring.Component):
             with m.State("SKIP"):
                 with m.If(left[-1] & ~to_end):
                     m.next = "SUBMESSAGE"
-                with m.Elif(i.valid & i.payload.end):
+                with m.Elif(ended):
                     m.next = "END"
                     with m.If(~to_end):
                         m.next = "SHORT"
-                with m.Elif(i.valid):
+                with m.Else():
                     m.d.comb += i.ready.eq(1)
-                    m.d.sync += left.eq(left - 1)
             # DROP, by reason; and the ordinary end, where nothing is left to be dropped.
             for state, reason in (
                 ("END", None),
@@ -209,7 +211,7 @@ class Walker(wiring.Component):
             ):
                 with m.State(state):
                     m.d.comb += i.ready.eq(1)
-                    with m.If(i.valid & i.payload.end):
+                    with m.If(ended):
                         if reason is not None:
                             m.d.comb += reason.eq(~i.payload.bad)
                         m.next = "START"
@@ -220,40 +222,42 @@ class Walker(wiring.Component):
         """Whether so many words are not left."""
         return left[-1] | below(left[:-1], words - 1)
 
-    def _prefix(self, m: Module, word: Value, came: Value, at: Value, slot: Value, is_known: Value) -> None:
+    def _prefix(self, m: Module, came: Value, ended: Value, at: Value, slot: Value, is_known: Value) -> None:
         """Compare each word of a prefix, as it stands there, with that of each participant."""
         many = self._peers.participants
-        i = self.i.stream
-        step = Signal(range(many + READ_LATENCY + 1))
-        addressed, shown = Signal.like(slot), Signal.like(slot)  # whose word the memory gives next, and now
-        match = Signal(many)
+        i, word = self.i.stream, self.i.stream.payload.data
+        step = Signal(range(many + READ_LATENCY))
+        match = Signal(many)  # so far; goes round with each word, the lowest bit is his whose word is there
+        same = Signal()
+        m.d.comb += same.eq(match[0] & (self.peers.data == word))
         with m.State("PREFIX"):
-            with m.If(i.valid & i.payload.end):
+            with m.If(ended):
                 m.d.sync += step.eq(0)
                 m.next = "SHORT"
             with m.Elif(came):
                 m.d.comb += self.peers.addr.eq(self._peers.participant(step, Cat(at, PREFIX)))
-                m.d.sync += [step.eq(step + 1), addressed.eq(step), shown.eq(addressed)]
+                m.d.sync += step.eq(step + 1)
                 with m.If(step == 0):
                     m.d.comb += [
                         self.source.en.eq(1),
                         self.source.addr.eq(self._peers.scratch((SCRATCH_SOURCE + at)[:4])),
                         self.source.data.eq(word),
                     ]
+                    m.d.sync += is_known.eq(0)
                     with m.If(at == 0):
                         m.d.sync += match.eq(self.alive)
                 with m.If(step >= READ_LATENCY):
-                    for n in range(many):
-                        with m.If(shown == n):
-                            m.d.sync += match[n].eq(match[n] & (self.peers.data == word))
-                with m.If(step == many + READ_LATENCY):
+                    m.d.sync += match.eq(Cat(match[1:], same))
+                    with m.If(same):  # by the last word, it is who speaks
+                        m.d.sync += [is_known.eq(1), slot.eq(step - READ_LATENCY)]
+                with m.If(step == many + READ_LATENCY - 1):
                     m.d.comb += i.ready.eq(1)
                     m.d.sync += [step.eq(0), at.eq(at + 1)]
                     with m.If(at == _PREFIX_WORDS - 1):
-                        m.d.sync += [is_known.eq(match.any()), slot.eq(_number(match)), at.eq(0)]
+                        m.d.sync += at.eq(0)
                         m.next = "SKIP"
 
-    def _compare_own(self, m: Module, came: Value, at: Value, left: Value, for_us: Value) -> None:
+    def _compare_own(self, m: Module, came: Value, ended: Value, at: Value, for_us: Value) -> None:
         """INFO_DST: our prefix, or none (GUIDPREFIX_UNKNOWN), which is everybody."""
         ours, nobodys = Signal(init=1), Signal(init=1)
         waited = Signal(range(READ_LATENCY + 1))
@@ -264,15 +268,10 @@ class Walker(wiring.Component):
         with m.Elif(came):
             m.d.comb += self.i.stream.ready.eq(1)
             same, zero = ours & (word == self.own.data), nobodys & (word == 0)
-            m.d.sync += [ours.eq(same), nobodys.eq(zero), waited.eq(0), left.eq(left - 1), at.eq(at + 1)]
+            m.d.sync += [ours.eq(same), nobodys.eq(zero), waited.eq(0), at.eq(at + 1)]
             with m.If(at == _PREFIX_WORDS - 1):
                 m.d.sync += [for_us.eq(same | zero), ours.eq(1), nobodys.eq(1)]
                 m.next = "SKIP"
-        with m.If(self.i.stream.valid & self.i.stream.payload.end):
+        with m.If(ended):
             m.d.sync += [ours.eq(1), nobodys.eq(1), waited.eq(0)]
-
-
-def _number(one: Value) -> Value:
-    """The place of the bit that is set, of at most one."""
-    bits = max(1, (len(one) - 1).bit_length())
-    return Cat(Cat(one[n] for n in range(len(one)) if n >> bit & 1).any() for bit in range(bits))
+            m.next = "SHORT"

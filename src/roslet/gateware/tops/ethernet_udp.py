@@ -10,7 +10,7 @@ from amaranth.lib.wiring import In, connect
 
 from roslet.gateware.config import Config
 from roslet.gateware.mac import Mac
-from roslet.gateware.raw_udp import RawUdpRx, RawUdpTx
+from roslet.gateware.raw_udp import TX_HEADER, RawUdpRx, RawUdpTx, data_limit
 from roslet.gateware.stack import UdpStack
 from roslet.gateware.tops.linked_node import LinkedNode
 from roslet.gateware.tops.links import EthernetLink
@@ -48,8 +48,9 @@ class EthernetUdp(LinkedNode):
         askers: int = 1,
         blocks: Mapping[str, Any] | None = None,
         more: Mapping[str, Any] | None = None,
+        longest: int = 0,
     ) -> None:
-        """`blocks` drop, too; `more` are ports of a larger node."""
+        """`blocks` drop, too; `more` are ports of a larger node; `longest` are the octets that it sends in a datagram."""
         self.config = config
         stack = UdpStack(
             config.ros2clk_hz,
@@ -60,6 +61,7 @@ class EthernetUdp(LinkedNode):
             pendings=config.max_pendings,
             fragments=config.max_ip_fragments,
             fragment_size=config.ip_max_payload_len,
+            longest=max(longest, data_limit(TX_HEADER, config.udp_txbuf_awidth, None)),
         )
         self._rx = RawUdpRx(config.udp_rxbuf_awidth)
         self._tx = RawUdpTx(config.udp_txbuf_awidth)

@@ -25,6 +25,8 @@ ARP_TRIES, ARP_INTERVAL, ARP_TIMEOUT = 4, 0.5, 30.0
 BAUD_ERROR = 0.01
 """How far from what was asked for the bits of a serial line may be: the other half of what a receiver forgives is for the
 other end's clock."""
+RX_QUEUE = 4096
+"""Octets that may come by Ethernet while the node is busy with those before: two frames of the greatest size."""
 LINE_QUEUE = 256
 """Octets that a serial line may bring while the node is busy with those before, or 65,000 cycles at 25 a bit."""
 UNREGISTERED = 30e6
@@ -40,7 +42,8 @@ def piece(mtu: int, fragments: int) -> int:
 
 
 class EthernetLink(wiring.Component):
-    """A MAC with the clocks and the reset of its PHY, and queues of `rx_depth` and `tx_depth` items between it and a stack.
+    """A MAC with the clocks and the reset of its PHY, and queues of `rx_depth` and `tx_depth` items between it and a stack,
+    beside its own, unless they are None.
 
     `clk_hz`, by which the reset is counted. Ports: `pins` has the names of those of the PHY; `rx` gives and `tx` takes
     frames; `up` is high from the end of the PHY's reset on. `drop_<reason>`, the MAC's.
@@ -49,10 +52,12 @@ class EthernetLink(wiring.Component):
     kind = "mac"
     """What the names of its drops begin with."""
 
-    def __init__(self, mac: Mac, clk_hz: float, rx_depth: int = 2048, tx_depth: int = 2) -> None:
+    def __init__(
+        self, mac: Mac, clk_hz: float, rx_depth: int | None = None, tx_depth: int | None = None
+    ) -> None:
         self._mac = mac
         self._cycles = max(1, round(PHY_RESET * clk_hz))
-        self._rx_queue, self._tx_queue = FrameFifo(rx_depth), FrameFifo(tx_depth)
+        self._depths = {"rx_queue": rx_depth, "tx_queue": tx_depth}
         self._drops = [name for name in mac.signature.members if name.startswith("drop_")]
         pins = {
             "phy_rx_clk": In(1),
@@ -77,12 +82,17 @@ class EthernetLink(wiring.Component):
         phy_clock(m, "phy_tx", self.phy_tx_clk)
         m.submodules.phy_reset = phy_reset = PhyReset(self._cycles)
         m.submodules.mac = mac = self._mac
-        m.submodules.rx_queue = rx_queue = self._rx_queue
-        m.submodules.tx_queue = tx_queue = self._tx_queue
-        connect(m, mac.rx, rx_queue.i)
-        connect(m, rx_queue.o, flipped(self.rx))
-        connect(m, flipped(self.tx), tx_queue.i)
-        connect(m, tx_queue.o, mac.tx)
+        for name, source, sink in (
+            ("rx_queue", mac.rx, flipped(self.rx)),
+            ("tx_queue", flipped(self.tx), mac.tx),
+        ):
+            depth = self._depths[name]
+            if depth is None:
+                connect(m, source, sink)
+            else:
+                m.submodules[name] = queue = FrameFifo(depth)
+                connect(m, source, queue.i)
+                connect(m, queue.o, sink)
         m.d.comb += [self.phy_rst_n.eq(phy_reset.phy_rst_n), self.up.eq(phy_reset.phy_rst_n)]
         expose(m, mac.pins, self)
         expose(m, mac, self, self._drops)
@@ -146,8 +156,9 @@ class Ethernet:
             echo_data=fragments * size - icmp.SIZE,
             fragments=fragments,
             fragment_size=size,
+            longest=longest,
         )
-        return EthernetLink(Mac(self.phy), clk_hz), stack
+        return EthernetLink(Mac(self.phy, RX_QUEUE), clk_hz, tx_depth=2), stack
 
     def settings(self, clk_hz: float) -> dict[str, int]:
         """Constant inputs of the stack that other links do not have."""

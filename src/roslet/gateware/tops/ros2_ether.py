@@ -114,6 +114,7 @@ class Ros2Ether(EthernetUdp):
             counters,
             groups=1,
             askers=2,
+            longest=self._participant.most,
             blocks={
                 "udp": self._switch,
                 "rtps": self._participant,
@@ -253,7 +254,7 @@ class Ros2Ether(EthernetUdp):
         connect(m, publisher.o, self._participant.publish0)
         m.d.comb += [
             loader.enable.eq(self.ros2pub_en | self.ros2sub_en),
-            loader.word.eq(word),
+            loader.word.eq(Mux(loader.done, 0, word)),
             loader.name_words.eq(name_words),
             loaded.eq(loader.done),
             publisher.word.eq(word),

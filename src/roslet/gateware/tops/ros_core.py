@@ -6,7 +6,7 @@ import ipaddress
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from amaranth.hdl import Module, ResetInserter, Signal
+from amaranth.hdl import Cat, Module, ResetInserter, Signal
 from amaranth.lib import memory
 from amaranth.lib.wiring import connect
 
@@ -14,7 +14,7 @@ from roslet.gateware.multicast import number
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.loader import Loader
 from roslet.gateware.rtps.participant import Participant
-from roslet.gateware.rtps.periods import QUICK_PERIOD, Periods
+from roslet.gateware.rtps.periods import QUICK, QUICK_PERIOD, every
 from roslet.gateware.rtps.rom import Rom, entity_id
 from roslet.gateware.rtps.tables import Local
 from roslet.gateware.tops.linked_node import LinkedNode
@@ -25,16 +25,13 @@ from roslet.wire import discovery_info
 from roslet.wire.net import udp
 from roslet.wire.rtps import guid, locator
 
-ANNOUNCEMENT, REMINDER = 3.0, 0.1
-"""Seconds between announcements, and between reminders of what has not been acknowledged."""
-STEP = 64
-"""Cycles in which periods are counted: the manual's PRESCALER_DIV."""
+ANNOUNCEMENT = 3
+"""Whole seconds between announcements. At start, and between reminders of what has not been acknowledged, it is
+QUICK_PERIOD."""
 LEASE = 20.0
 """Seconds that peers are told to wait for the next sign of us."""
 FRAGMENT_EXPIRATION = 1.0
 """Seconds for which fragments wait for the others."""
-SILENCE = 1.0
-"""Seconds for which a node waits for somebody else to speak, before it does."""
 NODE = ("room", "alive", "matched")
 """Ports of the participant, beside messages, that are the node's."""
 
@@ -97,7 +94,8 @@ class RosCore(LinkedNode):
     the network: Ethernet with `phy` and `cache_width`, unless another is given.
 
     A node that is reset is somebody else then, or peers would take its first numbers for old ones: in the end of its GUID
-    prefix is the cycle, counted since the power is on, in which the first frame came; or that of SILENCE after its reset.
+    prefix is the cycle in which the first frame came, or that of a second after its reset: not its number, counted since
+    the power is on, but what a shift register has then that has each other value before it has one again.
 
     Ports: those of `LinkedNode`, and `publish0` .., `receive0` .., `room`, `alive`, `matched`, as `Participant` has them.
     """
@@ -147,8 +145,6 @@ class RosCore(LinkedNode):
         made, stack = carrier.build(clk_hz, fragments, self._longest(participant))
         self._switch = PortSwitch((0, 0, 0))
         self._loader = self._session(participant, identity, info)
-        bits = self._steps(ANNOUNCEMENT).bit_length()  # the longest period
-        self._periods = Periods(round(clk_hz), self._steps(QUICK_PERIOD), 1, bits)
         members = participant.signature.members
         self._user_ports = [
             name for name in members if name.startswith(("publish", "receive")) or name in NODE
@@ -178,17 +174,12 @@ class RosCore(LinkedNode):
         words = max(Rom(own, self.identity.domain, LEASE).size.values())
         return 4 * (words + max(local.words for local in own.writers))
 
-    def _steps(self, seconds: float) -> int:
-        """So many steps of `Periods`."""
-        return max(1, round(seconds * self._clk_hz / STEP))
-
     def _user(self, m: Module) -> None:
         stack, identity = self._stack, self.identity
         rtps = self._participant
         running = Signal()
         m.submodules.switch = switch = self._switch
         m.submodules.rtps = ResetInserter(~running)(rtps)
-        m.submodules.periods = periods = self._periods
         connect(m, stack.udp_rx, switch.i)
         connect(m, switch.o0, rtps.udp_rx)
         connect(m, rtps.udp_tx, stack.udp_tx)
@@ -204,13 +195,6 @@ class RosCore(LinkedNode):
             stack.groups[0].valid.eq(1),
             stack.groups[0].ip.eq(number(locator.SPDP_MULTICAST_ADDRESS)),
             *(getattr(stack, name).eq(value) for name, value in self._settings.items()),
-            periods.enable.eq(running),
-            periods.prescaler_div.eq(STEP),
-            periods.announcement.eq(self._steps(ANNOUNCEMENT)),
-            periods.sweep0.eq(self._steps(REMINDER)),
-            rtps.tick.eq(periods.tick),
-            rtps.announce.eq(periods.announce),
-            rtps.sweep.eq(periods.sweep),
             *(getattr(switch, f"port{n}").eq(port) for n, port in enumerate(identity.ports)),
         ]
         expose(m, rtps, self, self._user_ports)
@@ -219,20 +203,35 @@ class RosCore(LinkedNode):
             self._memory(m)
 
     def _begin(self, m: Module, running: Signal) -> None:
-        """`running` from when the number of the session is known and written."""
+        """`running` from when the number of the session is known and written, and what is done by the clock from then on."""
         m.submodules.loader = loader = self._loader
-        rx = self._stack.rx.stream
-        cycles = Signal(32, reset_less=True)
+        rx, rtps = self._stack.rx.stream, self._participant
+        cycle = Signal(32, reset_less=True)
         session = Signal(32)
-        silence = Signal(range(round(self._clk_hz * SILENCE) + 1))
-        m.d.sync += [cycles.eq(cycles + 1), running.eq(loader.done)]
+        changed = ~(cycle[31] ^ cycle[21] ^ cycle[1] ^ cycle[0])
+        step = every(m, max(1, round(self._clk_hz * QUICK_PERIOD)), self._link.up)
+        second = every(m, round(1 / QUICK_PERIOD), step)
+        m.d.sync += [cycle.eq(Cat(changed, cycle)), running.eq(loader.done)]
         with m.If(self._link.up & ~loader.enable):
-            m.d.sync += [session.eq(cycles), silence.eq(silence + 1)]
+            m.d.sync += session.eq(cycle)
             came = rx.valid & rx.ready & rx.payload.end & ~rx.payload.bad
-            with m.If(came | (silence == round(self._clk_hz * SILENCE))):
+            with m.If(came | second):
                 m.d.sync += loader.enable.eq(1)
-        m.d.comb += loader.word.eq(session)
-        connect(m, loader.write, self._participant.own)
+        with m.If(running):
+            m.d.sync += session.eq(0)
+        quick = Signal(range(QUICK + 1), init=QUICK)
+        with m.If(running & step & (quick != 0)):
+            m.d.sync += quick.eq(quick - 1)
+        first = Signal(init=1)  # is to come
+        with m.If(running):
+            m.d.sync += first.eq(0)
+        m.d.comb += [
+            loader.word.eq(session),
+            rtps.tick.eq(second),
+            rtps.sweep.eq(step),
+            rtps.announce.eq(first | (step & (quick != 0)) | every(m, ANNOUNCEMENT, second)),
+        ]
+        connect(m, loader.write, rtps.own)
 
     def _memory(self, m: Module) -> None:
         """Where fragments wait."""
