@@ -284,9 +284,8 @@ class Discovery(wiring.Component):
                 self._write(m, peers.participant(slot, before), self._passes)
             with m.If(before == tables.USER_PORT):
                 m.d.comb += self._beside[tables.PORT_GROUP :].eq(Cat(near & listens, near))
-            with m.If(
-                step == tables.LEASE + READ_LATENCY
-            ):  # as it was heard, the next sweep writes what is left
+            # As it was heard, the next sweep writes what is left.
+            with m.If(step == tables.LEASE + READ_LATENCY):
                 m.d.comb += [counts.eq(0), self._comes.eq(1)]
                 m.next = "PROCEED"
                 with m.If(fresh):

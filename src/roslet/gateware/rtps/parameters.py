@@ -311,9 +311,8 @@ class Parameters(wiring.Component):
         act, read, number = v.act, self.read, v.number
         first, second = v.first & v.last, v.second & v.last
         m.d.comb += v.shifts.eq(v.first | (v.second & ~act.text))
-        reader = (
-            self.i.meta.kind == ports.SUBSCRIPTIONS
-        )  # it requests; what it requests beyond our offer is refused
+        # It requests; what it requests beyond our offer is refused.
+        reader = self.i.meta.kind == ports.SUBSCRIPTIONS
         beyond = v.high | number[2:].any()
         is_few = ~beyond & ~number[1]
         # The halves of a word as they came
