@@ -77,7 +77,7 @@ def repeat(m: Module, work: Sending, asked: Value, writers: Value, readers: Valu
             m.d.sync += subject.local.eq(work.oldest - work.age)
         m.next = "AGAIN"
     with m.State("AGAIN"):
-        m.d.comb += ports.own.addr.eq(subject.sample)
+        m.d.comb += work.of_sample.eq(1)
         m.next = "KEPT SAMPLE"
         with m.If(subject.builtin):
             m.next = "DISCOVERY"

@@ -37,9 +37,12 @@ class Sending:
         self._afterwards: list[str] = []
         self._after = Signal(4)
 
-        # Asked for of peers: this word of the proxy that is served, or of its participant
-        self.word, self.of_participant, self.asking = Signal(4), Signal(), Signal()
-        with m.If(self.asking):
+        # What the memories are looked at for, unless the composer looks: a word of the proxy that is served, or of
+        # its participant; one of our writer, or of its message.
+        self.chosen, self._composing = Signal(2), Signal()
+        self.word, self.of_participant = Signal(4), Signal()
+        self.own_word, self.of_sample = Signal(2), Signal()
+        with m.If(~self._composing):
             with m.If(self.of_participant):
                 m.d.comb += sender.peers.addr.eq(peers.participant(self.subject.slot, self.word))
             with m.Elif(self.subject.builtin):
@@ -47,6 +50,10 @@ class Sending:
                 m.d.comb += sender.peers.addr.eq(builtin)
             with m.Else():
                 m.d.comb += sender.peers.addr.eq(peers.endpoint(self.subject.endpoint, self.word))
+            with m.If(self.of_sample):
+                m.d.comb += sender.own.addr.eq(self.subject.sample)
+            with m.Else():
+                m.d.comb += sender.own.addr.eq(self._writer_word(self.own_word))
 
         # What our own memory gives, and more
         self.increment, self.sum = Signal(8, init=1), Signal(33)
@@ -71,7 +78,6 @@ class Sending:
     def _numbers(self, m: Module) -> None:
         """`number`, which the composer asks for, or, while that is idle, `chosen` says: its lower word, or the higher one,
         which needs to know what was borrowed from it, or carried, for the lower."""
-        self.chosen, self._composing = Signal(2), Signal()
         which = Signal(2)
         high, is_number = which[0], which[1]
         self.borrowed, first_borrowed = Signal(signed(2)), Signal(signed(2))
@@ -97,17 +103,17 @@ class Sending:
 
     def ask(self, m: Module, word: int | Value, of_participant: Value | int = 0) -> None:
         """For a word of the proxy that is served, or of its participant."""
-        m.d.comb += [self.asking.eq(1), self.word.eq(word), self.of_participant.eq(of_participant)]
+        m.d.comb += [self.word.eq(word), self.of_participant.eq(of_participant)]
 
     def ask_own(self, m: Module, word: int) -> None:
         """For a word of our writer."""
-        m.d.comb += self.ports.own.addr.eq(self._writer_word(word))
+        m.d.comb += self.own_word.eq(word)
 
     def store(self, m: Module, word: int) -> None:
         """`sum`, as a word of our writer."""
         m.d.comb += [self.ports.write.en.eq(1), self.ports.write.addr.eq(self._writer_word(word))]
 
-    def _writer_word(self, word: int) -> Value:
+    def _writer_word(self, word: int | Value) -> Value:
         subject = self.subject
         return self.own.writer(Mux(subject.builtin, subject.kind[0], subject.local), word, subject.builtin)
 
