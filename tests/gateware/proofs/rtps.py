@@ -263,7 +263,7 @@ class ParametersSpec(Spec):
     written of it is there. `taken`: what comes is taken within some cycles, but for the end of what is read."""
 
     module = parameters
-    quick, deep = 20, 32
+    quick, deep = 20, 26
     bugs = (
         Bug("done", "self.done.eq(~i.payload.bad)", "self.done.eq(1)"),
         Bug(
