@@ -161,6 +161,6 @@ def test_the_first_octet_comes_after_8_cycles_and_a_packet_costs_34_and_its_octe
         ({"max_length": 65516}, "a payload has 1 to 65515 octets"),
     ],
 )
-def test_arguments_that_cannot_be_are_refused(arguments: dict[str, int], sentence: str) -> None:
+def test_arguments_that_cannot_be_are_refused(arguments: dict[str, Any], sentence: str) -> None:
     with pytest.raises(ValueError, match=sentence):
         Ipv4Tx(**arguments)
