@@ -28,7 +28,7 @@ IDS = 2
 """Bits in which prefixes differ, and entity ids."""
 LEASE = 2
 """Bits of a lease, in seconds."""
-LIST = 33
+LIST = 30
 """Cycles of a list, at most."""
 SWEEP = 20
 """Cycles of a sweep, at most: of one that removes everybody."""
