@@ -30,7 +30,7 @@ class Design(wiring.Component):
     number.
 
     It counts and publishes `rate` times a second; what is due while an earlier message waits is not sent. With `ping` it
-    answers pings, which on an HX8K there is no room for.
+    answers pings, which takes the last of an HX8K's block RAMs.
     """
 
     def __init__(
