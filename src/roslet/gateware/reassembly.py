@@ -46,6 +46,7 @@ class _Slot(wiring.Component):
 
     `same`: a cycle ago the key was this fragment's; `known`: and the datagram is still waited for. `evictable`: a new one
     may have the slot: this one was given up, or is a repetition, maybe of late duplicates only, of the one before.
+    `complete`: a cycle ago all was there.
     """
 
     def __init__(self, max_fragments: int, unit_bits: int) -> None:
@@ -108,8 +109,8 @@ class _Slot(wiring.Component):
             ),
             self.repeats.eq((Value.cast(at_hand) == Value.cast(new)) & (fragment.more | (tail == its_tail))),
             self.full.eq(at_hand.valid),
-            self.complete.eq(has_last & (units == last_start)),
         ]
+        m.d.sync += self.complete.eq(has_last & (units == last_start))
         with m.If(self.rotate | self.accept):
             m.d.sync += [one.eq(next_one) for one, next_one in pairwise(ranges)]
             m.d.sync += ranges[-1].eq(Mux(self.accept, Value.cast(new), Value.cast(at_hand)))
@@ -148,9 +149,9 @@ class Reassembly(wiring.Component):
     `ip_payloadsmem`, the memory, of `depth` octets: `max_pendings` slots of `max_fragments * max_payload`; `expiration`, in
     cycles, as it is when a datagram's first fragment comes.
 
-    A fragment waits for `max_fragments` + 2 cycles before its first octet is taken, and for one at its end; it is written
+    A fragment waits for `max_fragments` + 2 cycles before its first octet is taken, and for two at its end; it is written
     an octet a cycle. When the last that was missing has come, its end waits until the whole datagram has been read and has
-    gone out, an octet a cycle; so `i` stalls for as many cycles as that has octets, and four.
+    gone out, an octet a cycle; so `i` stalls for as many cycles as that has octets, and five.
 
     Fragments belong together that have source, destination, protocol and identification in common. What has a range that
     is there already is a duplicate, and dropped (`drop_duplicate`). A datagram is given up, and all that still comes of it
@@ -327,12 +328,14 @@ class Reassembly(wiring.Component):
                 m.d.comb += i.ready.eq(~good)
                 with m.If(good):
                     m.d.comb += accept.eq(1)
-                    m.next = "JUDGE"
+                    m.next = "STORED"
                 with m.Elif(ended):
                     m.next = "IDLE"
                 with m.Elif(i.valid):
                     m.d.comb += [mem.ce.eq(1), mem.we.eq(1)]
                     m.d.sync += at.eq(following)
+            with m.State("STORED"):
+                m.next = "JUDGE"
             with m.State("JUDGE"):
                 m.d.sync += [at.eq(0), fetched.eq(0), has_octet.eq(0)]
                 with m.If(of_chosen(lambda slot: slot.complete)):
