@@ -84,7 +84,7 @@ class DatagramSpec(ReassemblySpec):
 
     fragments, unit = (3 if DEEP else 2), 2
     scale = (("_UNIT = 3", "_UNIT = 1"),)
-    quick, deep = (24 if DEEP else 22), 35
+    quick, deep = (26 if DEEP else 24), 37
     bugs = (
         ReassemblySpec.bugs[0],
         Bug("value", "octet.eq(mem.rdata), has_octet.eq(1)", "octet.eq(mem.rdata + 1), has_octet.eq(1)"),
