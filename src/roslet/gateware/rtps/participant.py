@@ -51,7 +51,8 @@ class Participant(wiring.Component):
 
     What is known at run time only: `own`, writes our own memory, for which nothing of this may be going on: hold it in reset
     meanwhile; `group_port` and `source_port`, where all are announced to, and what we send from; `writers_enabled`,
-    `readers_enabled`, as `Sender` has them. `own_map` says what lies where.
+    `readers_enabled`, as `Sender` has them. `own_map` says what lies where, and `most`, how many octets the longest datagram
+    has that is sent.
     """
 
     def __init__(
@@ -82,7 +83,7 @@ class Participant(wiring.Component):
         self._rom = Rom(own, domain, lease)
         most = 4 * max(self._rom.size[name] for name in self._rom.size)
         most += 4 * max((local.words for local in own.writers), default=0)
-        self.most = most  # octets of a datagram that is sent
+        self.most = most
         depth = 512
         while depth < 2 * (most // 4 + 1):
             depth *= 2
@@ -231,23 +232,11 @@ class Participant(wiring.Component):
                 given[side, name] = read.addr, word
         write, ours = peers.write_port(), own.write_port()
         # In the cycle after, as what is written takes long; what comes from outside does while this is held in reset
-        receiving = walker.source, submessages.write, discovery.write
-        outside = self.own.en
-        for port, given_ in (
-            (
-                write,
-                {name: _either(getattr(one, name) for one in receiving) for name in ("en", "addr", "data")},
-            ),
-            (
-                ours,
-                {
-                    "en": sender.write.en | outside,
-                    "addr": Mux(outside, self.own.addr, sender.write.addr),
-                    "data": Mux(outside, self.own.data, sender.write.data),
-                },
-            ),
-        ):
-            for name, value in given_.items():
+        receiving, outside = (walker.source, submessages.write, discovery.write), self.own
+        for name in ("en", "addr", "data"):
+            received = _either(getattr(one, name) for one in receiving)
+            sent = Mux(outside.en, getattr(outside, name), getattr(sender.write, name))
+            for port, value in ((write, received), (ours, sent)):
                 later = Signal.like(getattr(port, name), reset_less=True)
                 m.d.comb += getattr(port, name).eq(later)
                 m.d.sync += later.eq(value)

@@ -15,7 +15,7 @@ from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.loader import Loader
 from roslet.gateware.rtps.participant import Participant
 from roslet.gateware.rtps.periods import QUICK, QUICK_PERIOD, every
-from roslet.gateware.rtps.rom import Rom, entity_id
+from roslet.gateware.rtps.rom import entity_id
 from roslet.gateware.rtps.tables import Local
 from roslet.gateware.tops.linked_node import LinkedNode
 from roslet.gateware.tops.links import Ethernet, Serial, piece
@@ -142,7 +142,7 @@ class RosCore(LinkedNode):
             longest=self._payloads - udp.SIZE,
             lease=LEASE,
         )
-        made, stack = carrier.build(clk_hz, fragments, self._longest(participant))
+        made, stack = carrier.build(clk_hz, fragments, participant.most)
         self._switch = PortSwitch((0, 0, 0))
         self._loader = self._session(participant, identity, info)
         members = participant.signature.members
@@ -167,12 +167,6 @@ class RosCore(LinkedNode):
         found = [at + n // 4 + last for n in range(0, len(info), 4) if info[n:].startswith(prefix)]
         places = [own.own(tables.OWN_PREFIX) + last, *found]
         return Loader([(place, 0, False) for place in places], 1, own.address_bits, 1)
-
-    def _longest(self, participant: Participant) -> int:
-        """Octets of the longest datagram that it sends: a template, and a message."""
-        own = participant.own_map
-        words = max(Rom(own, self.identity.domain, LEASE).size.values())
-        return 4 * (words + max(local.words for local in own.writers))
 
     def _user(self, m: Module) -> None:
         stack, identity = self._stack, self.identity
