@@ -3,8 +3,8 @@
     python benchmarks/gates.py [--only size,echo,latency,publish] [--messages N] [--designs TEXT] [--json]
 
 size     LUTs, flip-flops, block RAMs and MHz on ECP5, speed grade 6, routed: `Ros2Ether` with the manual's constants, and
-         `RosNode` with 1, 4 and 16 topics each way; and on an iCE40 HX8K, mapped for area, the example serial-count, and a
-         node that only publishes a number. --designs: those with TEXT
+         `RosNode` with 1, 4 and 16 topics each way; and on an iCE40 HX8K the example serial-count, and a node that only
+         publishes a number. --designs: those with TEXT
 echo     the example typed-echo, pin to pin: from the last nibble of a Coordinate on `ping` to the first of the preamble of
          the one on `pong`, N times (1,000 unless told otherwise), each at any moment of an idle node
 latency  the manual's node with the user logic of topic-pub-sub: from `ros2_pub_app_data_rel` to the first nibble of the
@@ -149,10 +149,9 @@ def size(chosen: str) -> list[dict[str, Any]]:
         chip, top = make()
         goals = {clock: hz / 1e6 for clock, hz in CLOCKS.items() if clock in top.signature.members}
         goals["clk"] = chip.default_mhz
-        small = chip is lattice.ICE40
         with tempfile.TemporaryDirectory() as folder:
             try:
-                found = lattice.build(chip, top, "design", pathlib.Path(folder), goals, small=small)
+                found = lattice.build(chip, top, "design", pathlib.Path(folder), goals)
                 rows.append({"design": name, **found})
             except RosletError as error:
                 rows.append({"design": name, "device": chip.title, "failed": str(error).splitlines()[-1]})

@@ -6,7 +6,7 @@ the host at the other end of the line:
 
     roslet gateware sim serial-count
     roslet gateware sim serial-count --pty --seconds 600
-    roslet gateware build serial-count --target ice40 --small --output out
+    roslet gateware build serial-count --target ice40 --output out
 """
 
 from __future__ import annotations

@@ -80,16 +80,14 @@ def test_a_clock_that_is_too_slow_is_shown_and_fails(
     ]
     chip, _, name, folder, goals, how = built[0]
     assert (chip, name, folder) == (lattice.ECP5, "udp_tx_rx", tmp_path)
-    assert how == {"seed": 1, "seeds": 1, "small": False}
+    assert how == {"seed": 1, "seeds": 1}
     assert goals == {"clk": 100.0, "phy_rx_clk": 25.0, "phy_tx_clk": 25.0}
 
 
-def test_it_can_be_placed_again_and_made_smaller(
-    run: Run, tmp_path: pathlib.Path, built: list[tuple[Any, ...]]
-) -> None:
-    words = ("--target", "ecp5", "--seed", "3", "--seeds", "4", "--small", "--output", tmp_path)
+def test_it_can_be_placed_again(run: Run, tmp_path: pathlib.Path, built: list[tuple[Any, ...]]) -> None:
+    words = ("--target", "ecp5", "--seed", "3", "--seeds", "4", "--output", tmp_path)
     run("gateware", "build", "udp-tx-rx", *words)
-    assert built[0][-1] == {"seed": 3, "seeds": 4, "small": True}
+    assert built[0][-1] == {"seed": 3, "seeds": 4}
 
 
 @pytest.mark.parametrize(
@@ -114,11 +112,11 @@ def test_goals_follow_from_chip_and_phy(
 def test_an_example_with_a_serial_line_has_one_clock(
     target: str, chip: Any, clk: float, run: Run, tmp_path: pathlib.Path, built: list[tuple[Any, ...]]
 ) -> None:
-    words = ("serial-count", "--target", target, "--small", "--output", tmp_path)
+    words = ("serial-count", "--target", target, "--output", tmp_path)
     outcome = run("gateware", "build", *words)
     assert outcome.out.splitlines()[0] == "serial-count (serial) on some chip"
-    used, top, name, _, goals, how = built[0]
-    assert (used, name, goals, how["small"]) == (chip, "serial_count", {"clk": clk}, True)
+    used, top, name, _, goals, _ = built[0]
+    assert (used, name, goals) == (chip, "serial_count", {"clk": clk})
     assert set(top.signature.members) == {"clk", "rst_n", "uart_rx", "uart_tx", "led"}
 
 

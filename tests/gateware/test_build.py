@@ -223,12 +223,6 @@ def test_only_a_plain_read_may_give_anything_of_what_is_written_with_it(
     )
 
 
-@pytest.mark.parametrize("chip", [lattice.ECP5, lattice.ICE40], ids=["ecp5", "ice40"])
-def test_a_design_can_be_made_small(chip: lattice.Chip, tmp_path: Path) -> None:
-    found = lattice.build(chip, Pinned(Blink(), ("limit",)), "blink", tmp_path, {"clk": 12.0}, small=True)
-    assert found["flip_flops"] == 13 and found["met"] and found["luts"]["total"] >= 6
-
-
 def test_the_best_of_several_places_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     speeds = {"4": 90.0, "5": 97.0, "6": 95.0, "7": 101.0, "8": 140.0}
     seeds: list[str] = []

@@ -75,7 +75,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "frequency of each clock. The exit code is 1 where a clock is slower than it should be.\n\n"
         "DESIGN is ethernet-udp, the node of which user logic sends and receives UDP datagrams; ros2-ether, which is a\n"
         "ROS 2 node, too, with the module, ports, parameters and headers of the ROS2rapper manual; or an example with user\n"
-        "logic, as udp-tx-rx, or serial-count, which has a serial line and fits an iCE40 HX8K with --small. Pins of ecp5\n"
+        "logic, as udp-tx-rx, or serial-count, which has a serial line and fits an iCE40 HX8K. Pins of ecp5\n"
         "and ice40 are arbitrary; addresses and other settings of the first two come there from a shift register, since no\n"
         "package has so many pins. For arty-a7 a Vivado project is written, which nobody has run yet."
     )
@@ -111,9 +111,6 @@ def add(parser: argparse.ArgumentParser) -> None:
         default=1,
         metavar="N",
         help="of how many beginnings the best is taken, until the clocks are fast enough (default 1)",
-    )
-    build.add_argument(
-        "--small", action="store_true", help="map for fewer LUTs, a tenth or so; clocks are slower then"
     )
 
     gateware_sim.add(group)
@@ -204,7 +201,7 @@ def run_build(arguments: argparse.Namespace) -> int:
         goals = {"clk": mhz}
         if has_phy:
             goals |= dict.fromkeys(("phy_rx_clk", "phy_tx_clk"), PHY_MHZ[arguments.phy])
-        tries = {"seed": arguments.seed, "seeds": arguments.seeds, "small": arguments.small}
+        tries = {"seed": arguments.seed, "seeds": arguments.seeds}
         result.update(lattice.build(chip, top, identifier, folder, goals, **tries))
     _show(arguments, result)
     return OK if result.get("met", True) else FAILED

@@ -10,17 +10,11 @@ from typing import Any
 
 from roslet.gateware import toolchain
 
-_MAPPED = "&if,{W},{D},{R},-F,5,-A,5,-v;&mfs"
-SMALL = ";".join(
-    (
-        f"&scorr;&sweep;&dc2;&dch,-f;&ps;{_MAPPED}",
-        f"&st;&syn3;&dch,-f;{_MAPPED}",
-        f"&st;&dch,-f;{_MAPPED}",
-    )
-)
-"""ABC's script for few LUTs, as Yosys takes it: mapped three times, each more often for area than ABC does by itself."""
-RELAXED = 8500
-"""Picoseconds of LUTs that ABC may leave to any path; by itself it makes all as short as the longest can be."""
+_REFINE = "mfs2,-a{L};lutpack,-S,1"
+_MAP = f"strash;dch,-f;if,-D,{{levels}},-F,5,-A,5;{_REFINE.replace('{L}', ',-L,{levels}')}"
+MAPPING = ";".join(("strash;ifraig;scorr;dc2;if,-a", _REFINE.replace("{L}", ""), *[_MAP] * 5))
+"""ABC's script, as Yosys takes it: mapped to the fewest LUTs, whatever comes of the clock, and from there five times again, with
+no more than `levels` LUTs in a row."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +23,8 @@ class Chip:
 
     title: str
     synthesis: str
-    small: str  # further options of `synthesis`, for few LUTs
+    levels: int  # LUTs in a row, between flip-flops, that are short enough
+    mapped: str  # what Yosys does after ABC
     placer: str
     device: tuple[str, ...]
     constraints: str  # the ending of the file's name; the option of nextpnr's as well
@@ -44,7 +39,8 @@ class Chip:
 ECP5 = Chip(
     title="ECP5 LFE5U-25F, speed grade 6, CABGA381",
     synthesis="synth_ecp5 -nowidelut",  # with wide multiplexers in LUT pairs the whole takes a tenth more
-    small="-cmp2softlogic",
+    levels=7,
+    mapped="clean",
     placer="nextpnr-ecp5",
     device=("--25k", "--speed", "6", "--package", "CABGA381", "--lpf-allow-unconstrained"),
     constraints="lpf",
@@ -61,8 +57,9 @@ ECP5 = Chip(
 
 ICE40 = Chip(
     title="iCE40 HX8K, CT256",
-    synthesis="synth_ice40 -abc9 -device hx",
-    small="",
+    synthesis="synth_ice40 -device hx",
+    levels=10,
+    mapped="ice40_wrapcarry -unwrap; techmap -map +/ice40/ff_map.v; clean; opt_lut -tech ice40",
     placer="nextpnr-ice40",
     device=("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"),
     constraints="pcf",
@@ -82,25 +79,27 @@ def build(
     goals: Mapping[str, float],
     seed: int = 1,
     seeds: int = 1,
-    small: bool = False,
 ) -> dict[str, Any]:
     """Synthesize, place and route `top` in `folder`; `goals` are MHz of the inputs that are clocks.
 
     It is placed from `seed` and the numbers after it, `seeds` of them at most, until all clocks are as fast as they should
-    be; what is left in `folder` and reported is the best. `small`: with fewer LUTs, a tenth or so, and slower clocks.
+    be; what is left in `folder` and reported is the best.
 
     Returns the figures: `luts` with `total` and what for, `flip_flops`, `block_rams`, `clocks` (see `toolchain.clocks`),
     `met`, whether all are as fast as they should be, and `seed`. Raises ToolMissing, ToolFailed; what does not fit is one of
     these.
     """
     toolchain.command(chip.placer)  # before the minutes that lie ahead
-    script = toolchain.write_rtlil(top, name, folder, free=True)
-    synthesis = chip.synthesis
-    if small:
-        script += f"; scratchpad -set abc9.D {RELAXED}; scratchpad -set abc9.script +{SMALL}"
-        synthesis += f" {chip.small}"
     netlist = f"{name}.json"
-    toolchain.run("yosys", ["-q", "-p", f"{script}; {synthesis} -top {name} -json {netlist}"], folder)
+    synthesis = f"{chip.synthesis} -top {name}"
+    script = (
+        toolchain.write_rtlil(top, name, folder, free=True),
+        f"{synthesis} -run :map_luts",
+        f"abc -lut 4 -script +{MAPPING.format(levels=chip.levels)}",
+        chip.mapped,
+        f"{synthesis} -run map_cells: -json {netlist}",
+    )
+    toolchain.run("yosys", ["-q", "-p", "; ".join(script)], folder)
     cells = toolchain.cells(folder / netlist, name)
     constraints = f"{name}.{chip.constraints}"
     lines = [chip.frequency.format(port=port, mhz=mhz) for port, mhz in goals.items()]
