@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Array, C, Cat, Module, Mux, ResetInserter, Signal, Value
+from amaranth.hdl import C, Cat, Module, Mux, ResetInserter, Signal, Value
 from amaranth.lib.wiring import In, Out, connect
 
 from roslet.gateware.arbiter import FrameArbiter
 from roslet.gateware.config import Config, rtps_ports
+from roslet.gateware.gather import gather
 from roslet.gateware.meta import UDP_TX
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.loader import Loader, Store
@@ -233,8 +234,9 @@ class Ros2Ether(EthernetUdp):
 
         def store(address: int, *values: Value, moved: bool = False) -> None:
             for n, value in enumerate(values):
-                program.append((address + n, len(words), moved))
-                words.append(value)
+                place = next((place for place, word in enumerate(words) if word is value), len(words))
+                words[place:] = words[place:] or [value]
+                program.append((address + n, place, moved))
 
         prefix = _split(self.ros2_guid_prefix)
         store(own.own(tables.OWN_PREFIX), *prefix, self.ip_addr, meta_port, user_port)
@@ -247,9 +249,10 @@ class Ros2Ether(EthernetUdp):
 
         name_words = Signal(7)
         m.submodules.loader = loader = Loader(program, len(words), own.address_bits, len(name_words))
-        index, word = Signal(range(len(words))), Signal(32)
-        m.d.comb += index.eq(Mux(loader.done, publisher.index, loader.index))
-        m.d.sync += [word.eq(Array(words)[index]), name_words.eq((self.ros2_node_name_len + 3)[2:])]
+        loading, index = Signal.like(loader.index), Signal.like(loader.index)
+        m.d.comb += index.eq(Mux(loader.done, publisher.index, loading))
+        m.d.sync += [loading.eq(loader.index), name_words.eq((self.ros2_node_name_len + 3)[2:])]
+        word = gather(m, words, index)
         connect(m, loader.write, self._participant.own)
         connect(m, publisher.o, self._participant.publish0)
         m.d.comb += [
@@ -276,8 +279,9 @@ class Ros2Ether(EthernetUdp):
         store(at + 1, *prefix)
         name = at + 1 + len(_HEAD) // 4
         store(name, self.ros2_node_name_len, *_split(self.ros2_node_name))
+        one = C(1, 32)
         ends = [C(int.from_bytes(entity_id(0, writer), "little"), 32) for writer in (False, True)]
-        tail = [word for end in ends for word in (C(1, 32), *prefix, end)]
+        tail = [word for end in ends for word in (one, *prefix, end)]
         store(name + 1, *tail, moved=True)
 
     def _subscribe(self, m: Module, subscribing: Value) -> None:
