@@ -73,7 +73,7 @@ class IcmpEcho(wiring.Component):
         nowhere = (1 << slot_bits) - 1
         at = Signal(slot_bits, init=nowhere)  # where the octet before goes
         before = Signal(8)
-        is_type, is_upper, is_lower = (at == LEAD + offset for offset in (_TYPE, _CHECKSUM, _CHECKSUM + 1))
+        is_type, is_upper, is_lower = Signal(), Signal(), Signal()  # which is the octet before
         # The type goes from 8 to 0, so 8 is added to the upper octet of the checksum (RFC 1624); a carry out of that is
         # one in the lower, and a carry out of this one in the upper again.
         overflows = before[3:].all()
@@ -95,7 +95,14 @@ class IcmpEcho(wiring.Component):
         front = lead(meta.mac, meta.source[:8].replicate(4), ipv4.ICMP, meta.length)
         lead_octet = pick([*front[1:], front[0], front[0]], at[:4])  # of the octet behind that before
         with m.If(step):
-            m.d.sync += [at.eq(at + 1), before.eq(octet), carry.eq(is_upper & overflows)]
+            m.d.sync += [
+                at.eq(at + 1),
+                before.eq(octet),
+                carry.eq(is_upper & overflows),
+                is_type.eq(at == LEAD + _TYPE - 1),
+                is_upper.eq(at == LEAD + _CHECKSUM - 1),
+                is_lower.eq(is_upper),
+            ]
         m.d.comb += [step.eq(i.valid & i.ready & ~end), message_sum.add.eq(step)]
         full = is_waiting & is_answered
         with m.FSM():
@@ -132,7 +139,8 @@ class IcmpEcho(wiring.Component):
                     m.next = "LEAD"
         m.d.comb += [ended.eq(i.valid & i.ready & end), message_sum.clear.eq(ended)]
         with m.If(ended):
-            m.d.sync += [at.eq(nowhere), other_type.eq(0)]
+            m.d.sync += at.eq(nowhere)
+            m.d.sync += [signal.eq(0) for signal in (is_type, is_upper, is_lower, other_type)]
             with m.If(i.payload.bad):
                 pass
             with m.Elif(other_type):
