@@ -58,6 +58,29 @@ def ipv4_rx(
     }
 
 
+def lead(destination: str = PEER, protocol: int = 17, length: int = 0, hop: bytes = PEER_MAC) -> bytes:
+    """What begins a payload on its way to IPv4."""
+    return hop + IPv4Address(destination).packed + bytes([0, protocol]) + length.to_bytes(2, "big")
+
+
+def turning(dut: Any) -> Any:
+    """A testbench that turns the addresses beside `dut.i` as Ipv4Rx does."""
+
+    async def process(ctx: Any) -> None:
+        meta = dut.i.meta
+        while True:
+            (_, _, turn, source, destination) = await ctx.tick().sample(
+                dut.turn, meta.source, meta.destination
+            )
+            if turn:
+                ring = source | destination << 32
+                ring = ring >> 8 | (ring & 0xFF) << 56
+                ctx.set(meta.source, ring & 0xFFFF_FFFF)
+                ctx.set(meta.destination, ring >> 32)
+
+    return process
+
+
 def fields(meta: Any) -> dict[str, int]:
     """A meta that was received as a dict, to compare."""
     return {name: int(getattr(meta, name)) for name, _ in meta.shape()}

@@ -17,6 +17,7 @@ from roslet.gateware.fifo import (
     AsyncFrameFifo,
     FrameFifo,
     FrameRegister,
+    FrameStage,
     LossyFrameFifo,
     MessageRegister,
 )
@@ -56,9 +57,12 @@ def test_an_item_passes_every_cycle(depth: int) -> None:
 
 
 @pytest.mark.parametrize("stalls", STALLS)
-def test_registers_keep_frames_and_what_is_known_of_them(stalls: int) -> None:
+@pytest.mark.parametrize("register", [FrameRegister, FrameStage])
+def test_registers_keep_frames_and_what_is_known_of_them(
+    register: type[FrameRegister | FrameStage], stalls: int
+) -> None:
     frames = some_frames(8, 30, 12)
-    bench = Bench(FrameRegister(unsigned(8)), stalls)
+    bench = Bench(register(unsigned(8)), stalls)
     bench.send("i", frames, list(range(len(frames))))
     got = bench.receive("o")
     bench.run(lambda: len(got) == len(frames))
@@ -71,6 +75,23 @@ def test_registers_pass_an_octet_every_cycle_and_take_two_more_for_an_end_with_m
     bench.send("i", [bytes(99)] * 5, [0] * 5)
     got = bench.receive("o")
     bench.run(lambda: len(got) == 5, cycles=5 * (99 + 1 + 2) + 2)
+
+
+def test_a_stage_takes_one_more_for_an_end_with_meta() -> None:
+    bench = Bench(FrameStage(unsigned(8)), stalls=0)
+    bench.send("i", [bytes(99)] * 5, [0] * 5)
+    got = bench.receive("o")
+    bench.run(lambda: len(got) == 5, cycles=5 * (99 + 1 + 1) + 2)
+
+
+@pytest.mark.parametrize("stalls", [0, 30])
+def test_a_stage_without_meta_keeps_frames(stalls: int) -> None:
+    frames = some_frames(8, 30, 12)
+    bench = Bench(FrameStage(), stalls)
+    bench.send("i", frames)
+    got = bench.receive("o")
+    bench.run(lambda: len(got) == len(frames))
+    assert kinds([frame for frame, _ in got]) == kinds(frames)
 
 
 @pytest.mark.parametrize("stalls", STALLS)

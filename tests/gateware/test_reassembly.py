@@ -361,7 +361,7 @@ def test_a_datagram_is_forgotten_when_it_expires_and_not_before(pendings: int) -
         await bring(ctx, new[0])  # too early: dropped
         assert bench.counts["drop_expired"] == 0
         assert bench.counts["drop_slots"] == 1
-        await ctx.tick().repeat(40 * pendings)
+        await ctx.tick().repeat(40 * pendings + 16)
         assert bench.counts["drop_expired"] == pendings
         await bring(ctx, new[1])
         await bring(ctx, new[0])
@@ -442,7 +442,11 @@ class Pinged(Elaboratable):
         wiring.connect(m, self.rx.fragments, self.fragments.i)
         wiring.connect(m, self.fragments.o, self.echo.i)
         wiring.connect(m, self.echo.o, self.tx.i)
-        m.d.comb += [self.tx.addresses.eq(self.rx.addresses), self.rx.o.stream.ready.eq(1)]
+        m.d.comb += [
+            self.tx.addresses.eq(self.rx.addresses),
+            self.rx.o.stream.ready.eq(1),
+            self.rx.turn.eq(self.echo.turn),
+        ]
         return m
 
 

@@ -12,7 +12,8 @@ from amaranth.lib.wiring import In, Out
 from scapy.layers.inet import IP, UDP
 
 from gateware.frames import Bench
-from roslet.gateware.meta import ADDRESSES, IPV4_RX, IPV4_TX
+from gateware.internet import lead, turning
+from roslet.gateware.meta import ADDRESSES, IPV4_RX
 from roslet.gateware.raw_udp import RawUdpRx, RawUdpTx
 from roslet.gateware.stream import FrameSignature
 from roslet.gateware.udp import UdpRx, UdpTx
@@ -29,7 +30,8 @@ class Whole(wiring.Component):
         super().__init__(
             {
                 "i": In(FrameSignature(IPV4_RX)),
-                "o": Out(FrameSignature(IPV4_TX)),
+                "turn": Out(1),
+                "o": Out(FrameSignature()),
                 "addresses": In(ADDRESSES),
                 "led": Out(4),
                 "sent": Out(1),
@@ -59,6 +61,7 @@ class Whole(wiring.Component):
             raw_tx.lookup.done.eq(raw_tx.lookup.valid),
             raw_tx.lookup.found.eq(1),
             raw_tx.lookup.mac.eq(0x123456),
+            self.turn.eq(udp_rx.turn),
             udp_tx.addresses.eq(self.addresses),
             self.led.eq(example.led),
             self.sent.eq(example.udp_txbuf_rel),
@@ -89,12 +92,13 @@ def test_it_sends_its_text_every_period_and_shows_the_lengths_of_what_it_receive
     frames = [datagram(THERE, HERE, bytes(n)) for n in lengths]
     meta = {"mac": 1, "source": 0x0A01A8C0, "destination": 0x6401A8C0, "protocol": 17, "group": 0}
     bench.drive(watch)
+    bench.watch(turning(bench.dut))
     bench.send("i", frames, [{**meta, "length": len(frame)} for frame in frames])
     got = bench.receive("o")
     bench.run()
     # 0 shows nothing, 4 what 1 does, and so on; 249 is too long and dropped; 3 is as 1.
     assert leds == [0b0001, 0b0011, 0b0111, 0b1111, 0b0001]
     assert sent == [period, 2 * period, 3 * period]
-    assert [(frame, meta.mac) for frame, meta in got] == [
-        (datagram(HERE, THERE, b"UDP Send Test\n"), 0x123456)
-    ] * 3
+    told = datagram(HERE, THERE, b"UDP Send Test\n")
+    begin = lead(THERE, length=len(told), hop=bytes([0x56, 0x34, 0x12, 0, 0, 0]))
+    assert [frame for frame, _ in got] == [begin + told] * 3

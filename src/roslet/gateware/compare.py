@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Value
+from amaranth.hdl import C, Value
 
 
 def below(value: Value, bound: int) -> Value:
@@ -11,3 +11,11 @@ def below(value: Value, bound: int) -> Value:
     low = (bound - 1).bit_length()
     least: Value = value[:low] < bound
     return (value[low:] == 0) & least
+
+
+def above(value: Value, bound: int) -> Value:
+    """Whether a value is more than a number: bit by bit, from the lowest on."""
+    result: Value = C(0)
+    for place, bit in enumerate(value):
+        result = bit & result if bound >> place & 1 else bit | result
+    return result

@@ -7,7 +7,9 @@ from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.checksum import SerialSum
-from roslet.gateware.meta import IPV4_RX, IPV4_TX
+from roslet.gateware.compare import above
+from roslet.gateware.meta import HOP, IPV4_RX, LEAD, lead
+from roslet.gateware.octets import pick
 from roslet.gateware.stream import FrameSignature
 from roslet.wire.net import ethernet, icmp, ipv4
 
@@ -24,14 +26,15 @@ _DROPS = ("type", "group", "length", "size", "busy", "checksum")
 class IcmpEcho(wiring.Component):
     """Answers echo requests.
 
-    Ports: `i`, datagrams of ICMP; `o`, replies to the hosts that asked, by the hardware addresses that the requests came
-    from.
+    Ports: `i`, datagrams of ICMP; `turn`, as `Ipv4Rx` has it; `o`, replies behind their leads (see `meta.lead`), to the
+    hosts that asked, by the hardware addresses that the requests came from.
 
     A reply repeats up to `max_data` octets of data; its checksum is the request's with the type taken out of it (RFC 1624),
     so a wrong request cannot become a right reply. Two requests are held: while one is answered another is taken, so pings
-    may come back to back. Throughput an octet a cycle both ways, without stalling at `i`. A reply begins 4 cycles after the
-    end of its request, or after the end of the reply before it. The memory has two slots of 2**n octets, the least that is
-    more than the longest message, and a bit beside each octet.
+    may come back to back. The first octet of a request waits for the 14 of the reply's lead to be written; throughput then
+    an octet a cycle both ways. A reply begins 4 cycles after the end of its request, or after the end of the reply before
+    it. The memory has two slots of 2**n octets, the least that is more than lead and longest message, and a bit beside each
+    octet.
 
     Dropped whole, and counted when a good end has come: `drop_type`, no echo request; `drop_group`, to a group or broadcast
     address; `drop_length`, less than the header's 8 octets; `drop_size`, more than `max_data`; `drop_busy`, two are held;
@@ -45,7 +48,8 @@ class IcmpEcho(wiring.Component):
         super().__init__(
             {
                 "i": In(FrameSignature(IPV4_RX)),
-                "o": Out(FrameSignature(IPV4_TX)),
+                "turn": Out(1),
+                "o": Out(FrameSignature()),
                 **{f"drop_{reason}": Out(1) for reason in _DROPS},
             }
         )
@@ -53,14 +57,12 @@ class IcmpEcho(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         longest = icmp.SIZE + self._max_data
-        slot_bits = longest.bit_length()
+        slot_bits = (LEAD + longest).bit_length()
         word = data.StructLayout({"octet": 8, "last": 1})
         m.submodules.messages = messages = memory.Memory(shape=word, depth=2 << slot_bits, init=[])
-        kept = data.StructLayout({"mac": 48, "source": 32, "length": 16})
-        waiting, answered = Signal(kept), Signal(kept)
         is_waiting, is_answered = Signal(), Signal()
         with m.If(is_waiting & ~is_answered):
-            m.d.sync += [answered.eq(waiting), is_answered.eq(1), is_waiting.eq(0)]
+            m.d.sync += [is_answered.eq(1), is_waiting.eq(0)]
 
         # -- requests: each octet is written, as the reply has it, when the next item is there
 
@@ -71,54 +73,81 @@ class IcmpEcho(wiring.Component):
         nowhere = (1 << slot_bits) - 1
         at = Signal(slot_bits, init=nowhere)  # where the octet before goes
         before = Signal(8)
-        is_type, is_upper, is_lower = (at == _TYPE, at == _CHECKSUM, at == _CHECKSUM + 1)
+        is_type, is_upper, is_lower = Signal(), Signal(), Signal()  # which is the octet before
         # The type goes from 8 to 0, so 8 is added to the upper octet of the checksum (RFC 1624); a carry out of that is
         # one in the lower, and a carry out of this one in the upper again.
         overflows = before[3:].all()
         carry = Signal()
         one = (is_upper & overflows & octet.all()) | (is_lower & carry)
-        keep = Signal()
+        keep, step, ended = Signal(), Signal(), Signal()
         m.d.sync += [
             write.en.eq(keep),
             write.addr.eq(Cat(at, slot)),
             write.data.octet.eq(before + Cat(one, C(0, 2), is_type | is_upper, is_type.replicate(4))),
             write.data.last.eq(end),
         ]
-        m.d.comb += [message_sum.data.eq(octet), i.ready.eq(1)]
-        too_short, too_long = Signal(), Signal()  # from the second item on
-        m.d.sync += [too_short.eq(~meta.length[_SIZE_BITS:].any()), too_long.eq(meta.length > longest)]
+        m.d.comb += message_sum.data.eq(octet)
+        too_short, too_long = Signal(), Signal()  # from the second cycle on
+        m.d.sync += [too_short.eq(~meta.length[_SIZE_BITS:].any()), too_long.eq(above(meta.length, longest))]
         other_type, busy = Signal(), Signal()
+
+        # While the destination turns by, in its place what stands behind the source in the lead.
+        front = lead(meta.mac, meta.source[:8].replicate(4), ipv4.ICMP, meta.length)
+        lead_octet = pick([*front[1:], front[0], front[0]], at[:4])  # of the octet behind that before
+        with m.If(step):
+            m.d.sync += [
+                at.eq(at + 1),
+                before.eq(octet),
+                carry.eq(is_upper & overflows),
+                is_type.eq(at == LEAD + _TYPE - 1),
+                is_upper.eq(at == LEAD + _CHECKSUM - 1),
+                is_lower.eq(is_upper),
+            ]
+        m.d.comb += [step.eq(i.valid & i.ready & ~end), message_sum.add.eq(step)]
+        full = is_waiting & is_answered
         with m.FSM():
-            with m.State("REQUEST"), m.If(i.valid):
-                m.d.comb += keep.eq(1)
-                with m.If(~end):
-                    m.d.comb += message_sum.add.eq(1)
-                    m.d.sync += [at.eq(at + 1), before.eq(octet), carry.eq(is_upper & overflows)]
-                    with m.If(at == nowhere):
-                        m.d.sync += [
-                            other_type.eq(octet != icmp.ECHO_REQUEST),
-                            busy.eq(is_waiting & is_answered),
-                        ]
-                        with m.If(meta.group | (is_waiting & is_answered)):
-                            m.next = "DROP"
-                    with m.Elif(too_short | too_long):
+            with m.State("LEAD"), m.If(i.valid):
+                m.d.sync += [before.eq(lead_octet), busy.eq(full)]
+                with m.If(meta.group | full):
+                    m.next = "TYPE"
+                with m.Else():
+                    m.d.comb += [keep.eq(1), self.turn.eq((at[:4] >= HOP - 1) & ~at[:4].all())]
+                    m.d.sync += at.eq(at + 1)
+                    with m.If(at == LEAD - 2):
+                        m.next = "TYPE"
+            with m.State("TYPE"):
+                m.d.comb += [i.ready.eq(1), keep.eq(i.valid & ~meta.group & ~busy)]
+                with m.If(step):
+                    m.d.sync += other_type.eq(octet != icmp.ECHO_REQUEST)
+                    m.next = "REQUEST"
+                    with m.If(meta.group | busy):
+                        m.next = "DROP"
+                with m.If(ended):
+                    m.next = "LEAD"
+            with m.State("REQUEST"):
+                m.d.comb += [i.ready.eq(1), keep.eq(i.valid)]
+                with m.If(step):
+                    with m.If(too_short | too_long | other_type):
                         m.next = "DROP"
                     with m.Elif(is_type & (octet != 0)):  # a code
                         m.d.sync += other_type.eq(1)
-                    with m.If(other_type):
-                        m.next = "DROP"
-            with m.State("DROP"), m.If(i.valid & end):
-                m.next = "REQUEST"
-        with m.If(i.valid & end):
-            m.d.comb += message_sum.clear.eq(1)
-            m.d.sync += [at.eq(nowhere), other_type.eq(0), busy.eq(0)]
+                with m.If(ended):
+                    m.next = "LEAD"
+            with m.State("DROP"):
+                m.d.comb += i.ready.eq(1)
+                with m.If(ended):
+                    m.next = "LEAD"
+        m.d.comb += [ended.eq(i.valid & i.ready & end), message_sum.clear.eq(ended)]
+        with m.If(ended):
+            m.d.sync += at.eq(nowhere)
+            m.d.sync += [signal.eq(0) for signal in (is_type, is_upper, is_lower, other_type)]
             with m.If(i.payload.bad):
                 pass
             with m.Elif(other_type):
                 m.d.comb += self.drop_type.eq(1)
             with m.Elif(meta.group):
                 m.d.comb += self.drop_group.eq(1)
-            with m.Elif(too_short | (at == nowhere)):
+            with m.Elif(too_short):
                 m.d.comb += self.drop_length.eq(1)
             with m.Elif(too_long):
                 m.d.comb += self.drop_size.eq(1)
@@ -127,13 +156,7 @@ class IcmpEcho(wiring.Component):
             with m.Elif(~message_sum.right):
                 m.d.comb += self.drop_checksum.eq(1)
             with m.Else():
-                m.d.sync += [
-                    waiting.mac.eq(meta.mac),
-                    waiting.source.eq(meta.source),
-                    waiting.length.eq(meta.length),
-                    is_waiting.eq(1),
-                    slot.eq(~slot),
-                ]
+                m.d.sync += [is_waiting.eq(1), slot.eq(~slot)]
 
         # -- replies
 
@@ -145,10 +168,6 @@ class IcmpEcho(wiring.Component):
             read.addr.eq(Cat(following, reply_slot)),
             read.en.eq(0),
             o.payload.data.eq(item.octet),
-            self.o.meta.mac.eq(answered.mac),
-            self.o.meta.destination.eq(answered.source),
-            self.o.meta.protocol.eq(ipv4.ICMP),
-            self.o.meta.length.eq(answered.length),
         ]
         with m.If(read.en):
             m.d.sync += [following.eq(following + 1), item.eq(read.data)]

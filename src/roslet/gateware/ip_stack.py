@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from amaranth.hdl import Module
+from amaranth.hdl import Cat, Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
 from roslet.gateware.arbiter import FrameArbiter
 from roslet.gateware.drops import drop_outputs
-from roslet.gateware.fifo import FrameRegister
+from roslet.gateware.fifo import FrameRegister, FrameStage
 from roslet.gateware.icmp import MAX_DATA, IcmpEcho
 from roslet.gateware.ipv4_rx import Ipv4Rx, ProtocolSwitch
 from roslet.gateware.ipv4_tx import LONGEST, Ipv4Tx
@@ -20,7 +20,6 @@ from roslet.gateware.meta import (
     ETHERNET_TX,
     IPV4_FRAGMENT,
     IPV4_RX,
-    IPV4_TX,
     UDP_RX,
     UDP_TX,
 )
@@ -103,23 +102,26 @@ class IpStack(wiring.Component):
                 m.d.comb += block.addresses.eq(self.addresses)
         for name, (block, output) in self._drops.items():
             m.d.comb += getattr(self, name).eq(getattr(self._blocks[block], output))
+        m.d.comb += self._blocks["ipv4"].turn.eq(
+            Cat(self._blocks[name].turn for name in _BLOCKS.values() if name in self._blocks).any()
+        )
         self._receive(m)
         self._send(m)
         return m
 
-    def _join(self, m: Module, name: str, meta: Any, source: Any, sink: Any) -> None:
-        """Connect, with registers between if there shall be any."""
+    def _join(self, m: Module, name: str, meta: Any, source: Any, sink: Any, cut: bool = False) -> None:
+        """Connect, with registers between if there shall be any; `cut`, where `ready` comes late."""
         if not self._registers:
             connect(m, source, sink)
             return
-        m.submodules[f"{name}_register"] = between = FrameRegister(meta)
+        m.submodules[f"{name}_register"] = between = FrameRegister(meta) if cut else FrameStage(meta)
         connect(m, source, between.i)
         connect(m, between.o, sink)
 
     def _receive(self, m: Module) -> None:
         blocks = self._blocks
         received, reassembly = blocks["ipv4"], blocks["reassembly"]
-        self._join(m, "packets", ETHERNET_RX, flipped(self.rx), received.i)
+        self._join(m, "packets", ETHERNET_RX, flipped(self.rx), received.i, cut=True)
         datagrams = received.o
         if self.memory:
             m.submodules.datagrams = both = FrameArbiter(2, IPV4_RX)
@@ -130,7 +132,7 @@ class IpStack(wiring.Component):
             expose(m, reassembly, self, self.memory)
         else:
             connect(m, received.fragments, reassembly.i)
-        self._join(m, "datagrams", IPV4_RX, datagrams, blocks["protocol"].i)
+        self._join(m, "datagrams", IPV4_RX, datagrams, blocks["protocol"].i, cut=True)
         for n, protocol in enumerate(self._protocols):
             taker = flipped(self.igmp) if protocol == ipv4.IGMP else blocks[_BLOCKS[protocol]].i
             connect(m, getattr(blocks["protocol"], f"o{n}"), taker)
@@ -143,10 +145,10 @@ class IpStack(wiring.Component):
             m.d.comb += block.addresses.eq(self.addresses)
         connect(m, flipped(self.udp_tx), datagrams.i)
         if "icmp" in self._blocks:
-            m.submodules.datagrams_tx = both = FrameArbiter(2, IPV4_TX)
-            self._join(m, "udp_tx", IPV4_TX, datagrams.o, both.i0)
-            self._join(m, "echoes", IPV4_TX, self._blocks["icmp"].o, both.i1)
+            m.submodules.datagrams_tx = both = FrameArbiter(2)
+            self._join(m, "udp_tx", None, datagrams.o, both.i0)
+            self._join(m, "echoes", None, self._blocks["icmp"].o, both.i1)
             connect(m, both.o, packets.i)
         else:
-            self._join(m, "udp_tx", IPV4_TX, datagrams.o, packets.i)
-        self._join(m, "packets_tx", ETHERNET_TX, packets.o, flipped(self.tx))
+            self._join(m, "udp_tx", None, datagrams.o, packets.i)
+        self._join(m, "packets_tx", ETHERNET_TX, packets.o, flipped(self.tx), cut=True)

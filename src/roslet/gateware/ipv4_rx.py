@@ -11,7 +11,6 @@ from amaranth.lib.wiring import In, Out
 from roslet.gateware.checksum import SerialSum
 from roslet.gateware.meta import ADDRESSES, ETHERNET_RX, IPV4_FRAGMENT, IPV4_RX
 from roslet.gateware.stream import FrameSignature
-from roslet.wire.fields import OCTETS
 from roslet.wire.net import ethernet
 from roslet.wire.net import ipv4 as table
 
@@ -33,7 +32,9 @@ class Ipv4Rx(wiring.Component):
 
     Ports: `i`, what follows an Ethernet header of type IPv4; `o`, what follows the headers of whole datagrams; `fragments`,
     that of fragments (more of them to come, or an offset that is not 0). `meta.length` is the number of octets in every
-    frame of these that ends well; it is right from the first item on. `addresses` are the node's own.
+    frame of these that ends well; it is right from the first item on. `addresses` are the node's own. While a frame
+    is at `o` or `fragments`, `meta.source` and behind it `meta.destination`, as a ring of 8 octets, move on to the next
+    octet with each cycle of `turn`: who needs one after another has them without a multiplexer.
 
     Throughput an octet a cycle. Headers are taken without stalling, and judged in a cycle in which nothing is; what
     follows passes without a register, and stalls as `o` or `fragments` does. Holds the fields of one header.
@@ -56,6 +57,7 @@ class Ipv4Rx(wiring.Component):
                 "o": Out(FrameSignature(IPV4_RX)),
                 "fragments": Out(FrameSignature(IPV4_FRAGMENT)),
                 "addresses": In(ADDRESSES),
+                "turn": In(1),
                 "drop_version": Out(1),
                 "drop_header_length": Out(1),
                 "drop_checksum": Out(1),
@@ -78,7 +80,8 @@ class Ipv4Rx(wiring.Component):
         words = Signal(LENGTH_BITS - 2)
         identification, flags_fragment = Signal(16), Signal(16)
         protocol = Signal(8)
-        source, destination = Signal(32), Signal(32)
+        ring = Signal(64)
+        source, destination = ring[:32], ring[32:]
         bad_version, bad_ihl, too_long, too_short, bad_source = (
             Signal(name=name) for name in ("bad_version", "bad_ihl", "too_long", "too_short", "bad_source")
         )
@@ -100,16 +103,12 @@ class Ipv4Rx(wiring.Component):
             ("identification", identification),
             ("flags_fragment", flags_fragment),
             ("protocol", protocol),
-            ("source", source),
-            ("destination", destination),
         ]:
             with m.If(passing(name)):
-                if _FIELD[name].kind == OCTETS:
-                    m.d.sync += register.eq(Cat(register[8:], data))
-                elif name == "protocol":
-                    m.d.sync += register.eq(data)
-                else:
-                    m.d.sync += register.eq(Cat(data, register[:8]))
+                m.d.sync += register.eq(Cat(data, register)[: len(register)])
+        in_header = Signal()
+        with m.If(passing("source") | passing("destination") | self.turn):
+            m.d.sync += ring.eq(Cat(ring[8:], Mux(in_header, data, ring[:8])))
         with m.If(passing("version_ihl")):
             m.d.sync += [
                 ihl.eq(data[:4]),
@@ -140,8 +139,10 @@ class Ipv4Rx(wiring.Component):
                 m.d.sync += bad_source.eq(data[5:].all())
             with m.If(octet == 3):
                 m.d.sync += bad_source.eq(bad_source | still["own"] | still["subnet"])
-        to_group = Signal()
-        m.d.comb += to_group.eq((destination[4:8] == CLASS_D) | same["limited"] | same["subnet"])
+        to_multicast, to_group = Signal(), Signal()
+        with m.If(passing("destination") & (octet == 0)):
+            m.d.sync += to_multicast.eq(data[4:] == CLASS_D)
+        m.d.comb += to_group.eq(to_multicast | same["limited"] | same["subnet"])
         to_us = to_group | (same["own"] & ~self.i.meta.group)
 
         # -- what comes after
@@ -166,6 +167,7 @@ class Ipv4Rx(wiring.Component):
         with m.FSM():
             with m.State("HEADER"):
                 m.d.comb += [
+                    in_header.eq(1),
                     i.ready.eq(1),
                     taken.eq(i.valid & ~i.payload.end),
                     cut.eq(i.payload.end),

@@ -7,8 +7,9 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.checksum import SerialSum
+from roslet.gateware.compare import above
 from roslet.gateware.header import wire_order
-from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, HOP, IPV4_TX
+from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, HOP, LEAD
 from roslet.gateware.octets import octets, pick
 from roslet.gateware.stream import FrameSignature
 from roslet.wire.net import ethernet
@@ -32,16 +33,17 @@ _OFFSET = {field.name: field.offset for field in table.FIELDS}
 class Ipv4Tx(wiring.Component):
     """Puts an IPv4 header before each payload, or several where it is longer than the `mtu` allows.
 
-    Ports: `i`, payloads, `meta.length` being the number of their octets, `max_length` at most; `o`, IPv4 packets, with `hop`
-    each behind the hardware address `meta.mac`; `addresses`, of which the source is. `ttl` is the time to live.
+    Ports: `i`, payloads of `max_length` octets at most, each behind its lead (see `meta.lead`); `o`, IPv4 packets, with
+    `hop` each behind the hardware address that it goes to; `addresses`, of which the source is. `ttl` is the time to live.
 
     A datagram's fragments have the same identification, the next one's is one more. DF is clear. Where `max_length` fits
     into one packet, there is no logic to cut. Protocol 255, which is reserved, must not be asked for (see SerialSum).
 
-    The first octet stands at `o` 8 cycles after the first item at `i`, which waits for the header, of 20 octets; the rest
-    passes without a register. So a packet costs 28 cycles and its payload, with `hop` 6 more. Holds nothing.
+    With `hop` the hardware address passes in the cycles in which it comes; the other 8 octets of the lead are kept, and give
+    nothing; then the payload waits for the header, of 20 octets, and passes without a register. So a packet costs 34 cycles
+    and its payload. Holds the lead.
 
-    A payload that ends badly does so behind its header. One that ends before `length`, or after it, is made to end badly;
+    A payload that ends badly does so behind its header. One that ends before its length, or after it, is made to end badly;
     fragments of it that are out already are good, and the receiver waits for the last in vain.
     """
 
@@ -57,13 +59,13 @@ class Ipv4Tx(wiring.Component):
         self._ttl = ttl
         self._max_length = max_length
         self._hop = hop
-        room = mtu - table.SIZE
-        self._piece = room & ~7  # what is not last has a multiple of 8 octets: RFC 791, 3.1
-        self._whole = room
-        self._cuts = max_length > room
+        self._whole = mtu - table.SIZE
+        self._cuts = max_length > self._whole
+        self._piece = self._whole & ~7  # what is not last has a multiple of 8 octets: RFC 791, 3.1
+        self._packets = -(-max(0, max_length - self._whole) // self._piece) + 1
         super().__init__(
             {
-                "i": In(FrameSignature(IPV4_TX)),
+                "i": In(FrameSignature()),
                 "o": Out(FrameSignature(ETHERNET_TX)),
                 "addresses": In(ADDRESSES),
             }
@@ -73,107 +75,119 @@ class Ipv4Tx(wiring.Component):
         m = Module()
         m.submodules.sum = header_sum = SerialSum()
         i, o = self.i.stream, self.o.stream
-        meta = self.i.meta
+
+        # Which octet of the header. In the lead, whose destination stands where the header has it, it begins before and ends
+        # behind: so the own address is at hand, to be summed, while the hardware address passes.
+        begin, end_of_lead = _OFFSET["destination"] - HOP, _OFFSET["destination"] + LEAD - HOP - 1
+        at = Signal(range(end_of_lead + 1), init=begin)
+        assert (begin, end_of_lead) == (10, 23)
+        in_hop, in_rest = ~at[4], at[4] & at[2]  # of the lead: before the destination, and behind it
+        step = Signal()  # an octet of lead or header is done
 
         # -- what goes into this packet
 
-        position = Signal(range(self._max_length + 1))  # octets of the datagram that are out
-        left = Signal.like(position)
+        left = Signal(range(self._max_length + 1))  # octets of the datagram, without the packets before
         total = Signal(range(table.SIZE + min(self._whole, self._max_length) + 1))
+        count = Signal(range(self._whole + 1))  # octets of this packet's payload that are out
+        number = Signal(range(self._packets))  # of the packet within its datagram
         more, boundary = Signal(), Signal()
         identification = Signal(16)
         packet_done, datagram_done, passed = Signal(), Signal(), Signal()
-        length = Signal.like(meta.length)  # right from the second cycle of ADDRESSES on
-        m.d.sync += length.eq(meta.length)
-        m.d.comb += left.eq(length - position)
-        with m.If(datagram_done):
-            m.d.sync += [position.eq(0), identification.eq(identification + 1)]
+        again = number.any()
+        with m.If(packet_done):
+            m.d.sync += count.eq(0)
         with m.Elif(passed):
-            m.d.sync += position.eq(position + 1)
+            m.d.sync += count.eq(count + 1)
+        with m.If(datagram_done):
+            m.d.sync += [identification.eq(identification + 1), number.eq(0)]
+        with m.If(step & in_rest & at[1] & ~again):
+            m.d.sync += left.eq(Cat(i.payload.data, left[:8]))
         if self._cuts:
-            sent = Signal(range(self._piece))  # octets of this packet's payload that are out
-            with m.If(packet_done):
-                m.d.sync += [sent.eq(0), boundary.eq(0)]
-            with m.Elif(passed):
-                m.d.sync += [sent.eq(sent + 1), boundary.eq(more & (sent == self._piece - 1))]
+            # One adder says how long a packet is, and at its end what is left behind it.
+            added = (left + Mux(boundary, -self._piece, table.SIZE))[: len(left)]
+            m.d.comb += boundary.eq(more & (count == self._piece))
+            m.d.sync += [
+                more.eq(above(left, self._whole)),
+                total.eq(Mux(more, table.SIZE + self._piece, added)),
+            ]
+            with m.If(boundary & packet_done):
+                m.d.sync += [number.eq(number + 1), left.eq(added)]
+        else:
+            m.d.sync += total.eq(left + table.SIZE)
+
+        # -- what is kept of the lead: destination and protocol, and where there are fragments the hardware address before
+        # them. It comes round once while the header passes, and once before the next fragment.
+
+        kept = Signal(8 * (HOP + 5 if self._cuts else 5))
+        newest = kept[-8:]
+        from_i = Signal()
+        octet = Mux(from_i, i.payload.data, kept[:8])
+        comes_round = at >= _OFFSET["protocol"] if self._cuts else at == _OFFSET["destination"] - 1
+        with m.If(step & Mux(at[4], ~at[2] | (at[:2] == 1), comes_round)):
+            m.d.sync += kept.eq(Cat(kept[8:], octet))
 
         # -- the header
 
-        first, last = _OFFSET["source"], table.SIZE - 1
-        at = Signal(range(table.SIZE), init=first)
-        octet = Signal(8)
-        offset = Signal(13)
-        if self._cuts:
-            m.d.comb += offset.eq(position[3:])  # in units of 8 octets: RFC 791, 3.1
         numbers: dict[str, Value] = {
             "version_ihl": C(VERSION_IHL, 8),
             "dscp_ecn": C(0, 8),
             "total_length": total | C(0, 16),
             "identification": identification,
-            "flags_fragment": Cat(offset, more, C(0, 2)),
+            "flags_fragment": Cat((number * (self._piece >> 3) | C(0, 13))[:13], more, C(0, 2)),
             "ttl": C(self._ttl, 8),
-            "protocol": meta.protocol,
-            "checksum": C(0, 16),  # as it is summed
+            "protocol": newest,
+            "checksum": (~header_sum.result).replicate(2),  # each half in its cycle
             "source": self.addresses.ip,
-            "destination": meta.destination,
+            "destination": newest.replicate(4),
         }
         header = octets(Cat(wire_order(field, numbers[field.name]) for field in table.FIELDS))
-        m.d.comb += octet.eq(pick(header, at))
-        spelling = (at == _OFFSET["checksum"]) | (at == _OFFSET["checksum"] + 1)
-
+        field_octet = Mux(at[4], newest, pick(header[:16], at[:4]))
         m.d.comb += [
-            header_sum.data.eq(octet),
+            # In the lead the destination is summed as it is kept. The checksum's two octets change nothing.
+            header_sum.data.eq(field_octet),
+            header_sum.add.eq(step & (in_hop | (at[2] ^ at[:2].any()))),
             header_sum.clear.eq(packet_done),
             self.o.meta.type.eq(ethernet.IPV4),
+            o.payload.data.eq(octet),
         ]
 
         with m.FSM():
-            # Addresses are summed before the packet begins, as they come after the checksum.
-            with m.State("ADDRESSES"), m.If(i.valid):
-                m.d.comb += header_sum.add.eq(1)
-                m.d.sync += at.eq(at + 1)
-                if self._cuts:
-                    m.d.sync += [
-                        more.eq(left > self._whole),
-                        total.eq(table.SIZE + Mux(more, self._piece, left)),
-                    ]
-                else:
-                    m.d.sync += total.eq(table.SIZE + meta.length)
-                with m.If(at == last):
-                    m.d.sync += at.eq(0)
-                    m.next = "HOP" if self._hop else "HEADER"
-            with m.State("HOP"):
-                m.d.comb += [o.valid.eq(1), o.payload.data.eq(pick(octets(meta.mac), at))]
-                with m.If(o.ready):
+            with m.State("LEAD"):
+                passes = in_hop if self._hop else C(0)
+                m.d.comb += [
+                    from_i.eq(~again),
+                    o.valid.eq(passes & (i.valid | again)),
+                    step.eq((i.valid | again) & (o.ready | ~passes)),
+                    i.ready.eq(~again & (o.ready | ~passes)),
+                ]
+                with m.If(step):
                     m.d.sync += at.eq(at + 1)
-                    with m.If(at == HOP - 1):
+                    with m.If(at == end_of_lead):
                         m.d.sync += at.eq(0)
                         m.next = "HEADER"
             with m.State("HEADER"):
-                m.d.comb += [
-                    o.valid.eq(1),
-                    o.payload.data.eq(Mux(spelling, ~header_sum.result, octet)),
-                    header_sum.add.eq(o.ready),
-                ]
-                with m.If(o.ready):
+                m.d.comb += [o.payload.data.eq(field_octet), o.valid.eq(1), step.eq(o.ready)]
+                with m.If(step):
                     m.d.sync += at.eq(at + 1)
-                    with m.If(at == last):
-                        m.d.sync += at.eq(first)
+                    with m.If(at == table.SIZE - 1):
+                        m.d.sync += at.eq(begin)
                         m.next = "PAYLOAD"
             with m.State("PAYLOAD"):
+                m.d.comb += [
+                    from_i.eq(1),
+                    packet_done.eq(o.valid & o.ready & o.payload.end),
+                ]
                 with m.If(boundary):
-                    m.d.comb += [o.valid.eq(1), o.payload.end.eq(1), packet_done.eq(o.ready)]
+                    m.d.comb += [o.valid.eq(1), o.payload.end.eq(1)]
                 with m.Else():
                     m.d.comb += [
                         o.valid.eq(i.valid),
                         i.ready.eq(o.ready),
-                        o.payload.data.eq(i.payload.data),
                         o.payload.end.eq(i.payload.end),
-                        o.payload.bad.eq(i.payload.end & (i.payload.bad | left.any())),
+                        o.payload.bad.eq(i.payload.end & (i.payload.bad | more | (count != left))),
                         passed.eq(i.valid & o.ready & ~i.payload.end),
-                        datagram_done.eq(i.valid & o.ready & i.payload.end),
-                        packet_done.eq(datagram_done),
+                        datagram_done.eq(packet_done),
                     ]
                 with m.If(packet_done):
-                    m.next = "ADDRESSES"
+                    m.next = "LEAD"
         return m

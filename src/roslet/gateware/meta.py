@@ -6,8 +6,11 @@ numbers.
 
 from __future__ import annotations
 
+from amaranth.hdl import C, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
+
+from roslet.gateware.octets import octets
 
 ADDRESSES = data.StructLayout({"mac": 48, "ip": 32, "gateway": 32, "mask": 32})
 """The node's own, steady while it is enabled."""
@@ -33,8 +36,15 @@ IPV4_FRAGMENT = data.StructLayout(
 )
 """Behind the header of a fragment: as IPV4_RX, `length` being its own; `offset` in units of 8 octets."""
 
-IPV4_TX = data.StructLayout({"mac": 48, "destination": 32, "protocol": 8, "length": 16})
-"""Before an IPv4 header: where it goes, by which hardware address; `length` of what follows."""
+LEAD = HOP + 8
+"""So many octets begin each payload on its way to IPv4, for the same reason (see `lead`)."""
+
+
+def lead(mac: Value, destination: Value, protocol: int, length: Value) -> list[Value]:
+    """These octets: the hardware address that the payload goes to, and the end of UDP's pseudo-header (RFC 768): the
+    destination, zero, the protocol, and the length of what follows, a number of 16 bits."""
+    return [*octets(mac), *octets(destination), C(0, 8), C(protocol, 8), length[8:16], length[:8]]
+
 
 UDP_RX = data.StructLayout(
     {

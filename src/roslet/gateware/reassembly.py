@@ -10,6 +10,7 @@ from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
 
+from roslet.gateware.compare import above
 from roslet.gateware.meta import IPV4_FRAGMENT, IPV4_RX
 from roslet.gateware.stream import FrameSignature
 from roslet.wire.net import ethernet, ipv4
@@ -35,6 +36,38 @@ class PayloadMemorySignature(wiring.Signature):
         super().__init__(
             {"addr": Out(range(depth)), "ce": Out(1), "we": Out(1), "wdata": Out(8), "rdata": In(8)}
         )
+
+
+class _Timer(wiring.Component):
+    """`over` a number of `cycles`, which stands steady for 8, after `start`, or up to 16 more.
+
+    They are counted down by a subtractor of four bits: a ring of 8 digits turns by it, of which a turn takes 8.
+    """
+
+    def __init__(self) -> None:
+        super().__init__({"cycles": In(32), "start": In(1), "over": Out(1)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        ring = Signal(32)
+        at = Signal(3)  # of the digit at hand
+        first, last = at == 0, at == 7
+        loading, borrow = Signal(), Signal()
+        digit = ring[:4]
+        borrows = Mux(first, ~digit[3], borrow & (digit == 0))
+        counted = Mux(first, digit ^ 8, digit - borrow)[:4]
+        m.d.sync += [
+            at.eq(at + 1),
+            ring.eq(Cat(ring[4:], Mux(loading, self.cycles.word_select(at, 4), counted))),
+            borrow.eq(borrows),
+        ]
+        with m.If(last):
+            m.d.sync += loading.eq(0)
+        with m.If(self.start):
+            m.d.sync += [at.eq(0), loading.eq(1), self.over.eq(0)]
+        with m.Elif(last & borrows & ~loading):
+            m.d.sync += self.over.eq(1)
+        return m
 
 
 class _Slot(wiring.Component):
@@ -81,11 +114,11 @@ class _Slot(wiring.Component):
         key = Cat(fragment[name] for name in _KEY)
         its_key = Signal(len(key))
         suspect = Signal()
-        left = Signal(32)  # cycles until it is forgotten
         ranges = [Signal(self._range, name=f"range{n}") for n in range(self._count)]
         new = Signal(self._range)
-        units, last_start = Signal.like(self.stop), Signal.like(self.stop)
+        units = Signal.like(self.stop)  # of all that is there; what the last has less than one is none
         has_last = Signal()
+        m.submodules.timer = timer = _Timer()
         m.d.comb += [
             new.valid.eq(1),
             new.start.eq(fragment.offset),
@@ -93,11 +126,10 @@ class _Slot(wiring.Component):
             new.last.eq(~fragment.more),
             self.known.eq(self.busy & self.same),
             self.evictable.eq(self.given_up | suspect),
-            self.expired.eq(self.busy & (left == 0)),
+            timer.cycles.eq(self.expiration),
+            self.expired.eq(self.busy & timer.over),
         ]
         m.d.sync += self.same.eq(its_key == key)
-        with m.If(self.busy & ~self.expired):
-            m.d.sync += left.eq(left - 1)
 
         at_hand = ranges[0]
         tail, its_tail = fragment.length[:_UNIT], self.total[:_UNIT]
@@ -110,35 +142,24 @@ class _Slot(wiring.Component):
             self.repeats.eq((Value.cast(at_hand) == Value.cast(new)) & (fragment.more | (tail == its_tail))),
             self.full.eq(at_hand.valid),
         ]
-        m.d.sync += self.complete.eq(has_last & (units == last_start))
+        m.d.sync += self.complete.eq(has_last & (units == self.total[_UNIT:]))
         with m.If(self.rotate | self.accept):
             m.d.sync += [one.eq(next_one) for one, next_one in pairwise(ranges)]
             m.d.sync += ranges[-1].eq(Mux(self.accept, Value.cast(new), Value.cast(at_hand)))
         with m.If((self.accept | self.give_up) & ~self.known):
-            m.d.sync += [
-                its_key.eq(key),
-                self.busy.eq(1),
-                suspect.eq(self.same),
-                self.given_up.eq(0),
-                left.eq(self.expiration),
-                has_last.eq(0),
-                *(one.valid.eq(0) for one in ranges[:-1]),
-            ]
+            m.d.comb += timer.start.eq(1)
+            m.d.sync += [its_key.eq(key), self.busy.eq(1), suspect.eq(self.same)]
         with m.If(self.give_up):
             m.d.sync += self.given_up.eq(1)
         with m.If(self.accept):
-            with m.If(fragment.more):
-                m.d.sync += units.eq(Mux(self.known, units, 0) + fragment.length[_UNIT:])
-            with m.Else():
-                m.d.sync += [
-                    has_last.eq(1),
-                    last_start.eq(new.start),
-                    self.total.eq(Cat(tail, self.stop)),
-                ]
-                with m.If(~self.known):
-                    m.d.sync += units.eq(0)
+            m.d.sync += units.eq(units + fragment.length[_UNIT:])
+        with m.If(self.accept & ~fragment.more):
+            m.d.sync += [has_last.eq(1), self.total.eq(Cat(tail, self.stop))]
         with m.If(self.free):
-            m.d.sync += self.busy.eq(0)
+            m.d.sync += [
+                signal.eq(0)
+                for signal in (self.busy, self.given_up, has_last, units, *(one.valid for one in ranges))
+            ]
         return m
 
 
@@ -159,11 +180,11 @@ class Reassembly(wiring.Component):
     is too small, or a fragment is empty, or is not the last and no multiple of 8 octets long (`drop_size`); when it has more
     fragments than `max_fragments` (`drop_fragments`). A fragment that ends badly does not count.
 
-    A datagram that is not whole `expiration` cycles after its first fragment has come is forgotten (`drop_expired`), as soon
-    as no fragment is passing. While all slots are in use, other datagrams are dropped (`drop_slots`): who came first keeps
-    the slot, since to give it to who comes last would let a flood of first fragments undo everyone's datagrams, where now
-    it delays them by `expiration` at most. But a slot whose datagram was given up, or has the key of the datagram before it
-    (late duplicates would hold it in vain), is given to who asks for it.
+    A datagram that is not whole `expiration` cycles after its first fragment has come, or up to 16 more, is forgotten
+    (`drop_expired`), as soon as no fragment is passing. While all slots are in use, other datagrams are dropped
+    (`drop_slots`): who came first keeps the slot, since to give it to who comes last would let a flood of first fragments
+    undo everyone's datagrams, where now it delays them by `expiration` at most. But a slot whose datagram was given up,
+    or has the key of the datagram before it (late duplicates would hold it in vain), is given to who asks for it.
     """
 
     def __init__(self, max_pendings: int = 1, max_fragments: int = 2, max_payload: int = MAX_PAYLOAD) -> None:
@@ -225,7 +246,7 @@ class Reassembly(wiring.Component):
         wrong_size = Signal()
         room = self._room >> _UNIT
         m.d.comb += wrong_size.eq(
-            (stop > room)
+            above(stop, room)
             | ((stop == room) & tail.any())
             | ~fragment.length.any()
             | (fragment.more & tail.any())

@@ -13,7 +13,8 @@ from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from roslet.gateware.meta import ADDRESSES, IPV4_RX, IPV4_TX, UDP_RX, UDP_TX
+from roslet.gateware.meta import ADDRESSES, IPV4_RX, UDP_RX, UDP_TX, lead
+from roslet.gateware.octets import octets, pick
 from roslet.gateware.stream import FrameSignature
 from roslet.wire.net import ipv4, udp
 
@@ -29,7 +30,7 @@ def _add(left: Value, right: Value, carry: Value) -> Value:
 class UdpRx(wiring.Component):
     """Takes the UDP header off each datagram, and judges it.
 
-    Ports: `i`, what IPv4 datagrams of protocol UDP carry; `o`, the data of UDP datagrams.
+    Ports: `i`, what IPv4 datagrams of protocol UDP carry; `o`, the data of UDP datagrams; `turn`, as `Ipv4Rx` has it.
 
     Throughput one octet a cycle: `i` waits only for `o`. The eight octets of the header give nothing; data pass without a
     register, in the cycle in which they come. Octets beyond the length in the header are taken and give nothing. Holds the
@@ -49,6 +50,7 @@ class UdpRx(wiring.Component):
             {
                 "i": In(FrameSignature(IPV4_RX)),
                 "o": Out(FrameSignature(UDP_RX)),
+                "turn": Out(1),
                 "drop_length": Out(1),
                 "drop_checksum": Out(1),
             }
@@ -74,7 +76,8 @@ class UdpRx(wiring.Component):
 
         in_header = Signal()
         any_checksum = Signal()
-        right = self._sum(m, octet, taken, ended, in_header, at, count[0])
+        right = self._sum(m, octet, taken, ended, in_header, count[0])
+        m.d.comb += self.turn.eq(taken & in_header)
 
         m.d.comb += [
             self.o.meta.mac.eq(self.i.meta.mac),
@@ -129,17 +132,17 @@ class UdpRx(wiring.Component):
         return m
 
     def _sum(
-        self, m: Module, octet: Value, taken: Value, ended: Value, in_header: Value, at: Value, odd: Value
+        self, m: Module, octet: Value, taken: Value, ended: Value, in_header: Value, odd: Value
     ) -> Value:
         """Whether the sum over pseudo-header, header and data taken is right.
 
-        Beside each octet of the header goes one of the addresses. The length of the pseudo-header is the number of octets
-        if the datagram is right, so it need not wait to be known: it is counted, 1 an octet of data, in the odd column.
+        Beside each octet of the header goes one of the addresses, which turn. The length of the pseudo-header is the number
+        of octets if the datagram is right, so it need not wait to be known: it is counted, 1 an octet of data, in the odd
+        column.
         """
         column, other = Signal(8), Signal(8, init=ipv4.UDP + udp.SIZE)  # even, odd at the beginning
         carry, carry_beside = Signal(), Signal()
-        addresses = Cat(self.i.meta.source, self.i.meta.destination)
-        beside = Mux(in_header, addresses.word_select(at, 8), Cat(C(0, 1), odd))
+        beside = Mux(in_header, self.i.meta.source[:8], Cat(C(0, 1), odd))
         with_beside = _add(octet, beside, carry_beside)
         total = _add(column, with_beside[:8], carry)
         with m.If(ended):
@@ -156,19 +159,20 @@ class UdpRx(wiring.Component):
 class UdpTx(wiring.Component):
     """Puts a UDP header before each datagram.
 
-    Ports: `i`, the data of UDP datagrams; `o`, what IPv4 datagrams carry; `addresses`, of which `ip` goes into the checksum.
+    Ports: `i`, the data of UDP datagrams; `o`, what IPv4 datagrams carry, behind its lead (see `meta.lead`); `addresses`, of
+    which `ip` goes into the checksum.
 
-    A checksum is always sent, never zero. The header begins 18 cycles after the first item of `i` is valid, which then waits
-    until the header is out; the data pass without a register, one octet a cycle. `i.meta.length` and `i.meta.sum` are taken
-    as they are: who sends octets that they do not fit sends a datagram that its receiver will drop. A frame whose end is bad
-    has a bad end. Holds nothing but the sum; drops nothing.
+    A checksum is always sent, never zero. The lead begins with the first item of `i`, which then waits until the header is
+    out: this begins 6 cycles behind the lead, and pauses for 4 before its checksum; the data pass without a register, one
+    octet a cycle. `i.meta.length` and `i.meta.sum` are taken as they are: who sends octets that they do not fit sends a
+    datagram that its receiver will drop. A frame whose end is bad has a bad end. Holds nothing but the sum; drops nothing.
     """
 
     def __init__(self) -> None:
         super().__init__(
             {
                 "i": In(FrameSignature(UDP_TX)),
-                "o": Out(FrameSignature(IPV4_TX)),
+                "o": Out(FrameSignature()),
                 "addresses": In(ADDRESSES),
             }
         )
@@ -177,66 +181,47 @@ class UdpTx(wiring.Component):
         m = Module()
         i, o = self.i.stream, self.o.stream
         meta = self.i.meta
-        length = Signal(16)  # from the second cycle of SUM on
+        length = Signal(16)  # from the second cycle of LEAD on
         m.d.sync += length.eq(Cat(meta.length[:3], meta.length[3:] + 1))  # and udp.SIZE, 8
         numbers = {**{name: meta[name] for name in ("source_port", "destination_port")}, "length": length}
-        words = [(word[8:16], word[:8]) for word in (meta.sum, *(numbers[field.name] for field in _NUMBERS))]
-        octets = Cat(self.addresses.ip, meta.destination, *(octet for word in words for octet in word))
-        assert len(octets) == 8 * 16
-        header = 16 - udp.SIZE + 2  # the numbers are last
-        length_at = 16 - 2
-        at = Signal(4)
-        octet = octets.word_select(at, 8)
+        header = [octet for field in _NUMBERS for octet in (numbers[field.name][8:], numbers[field.name][:8])]
 
-        # Complements are summed, beginning with that of the protocol: so the sum is the checksum. Not being all zeros at the
-        # beginning it never becomes so, and a checksum of zero is sent as all ones by itself.
-        column, other = Signal(8, init=0xFF), Signal(8, init=~ipv4.UDP & 0xFF)
+        # What goes out and what is summed, in one row: behind the lead, which is the end of the pseudo-header, what is only
+        # summed; the header's numbers; all ones, so that the carries come to rest; and at the beginning the checksum, as the
+        # row begins anew with it.
+        column, other = Signal(8), Signal(8)
+        front = lead(meta.mac, meta.destination, ipv4.UDP, length)
+        silent = [*octets(self.addresses.ip), meta.sum[8:], meta.sum[:8]]
+        row = [column, column, *front, *silent, *header, *[C(0xFF, 8)] * 4]
+        begin = 2
+        at = Signal(range(len(row)), init=begin)
+        octet = Signal(8)
+        m.d.comb += octet.eq(pick(row, at))
+        assert (begin + len(front), len(row) - 4 - len(header), len(row)) == (16, 22, 32)
+        given = ~at[4] | Mux(at[3], ~at[2], at[2] & at[1])  # goes out: 0 to 15, 22 to 27
+
+        # Complements are summed, of all behind the hardware address: so the sum is the checksum. Once not all zeros, as from
+        # the first of a zero on, it never becomes so, and a checksum of zero is sent as all ones by itself.
         carry = Signal()
-        step, adding = Signal(), Signal()
-        total = _add(column, Mux(adding, ~octet, 0), carry)
-        with m.If(step):
-            m.d.sync += [column.eq(other), Cat(other, carry).eq(total)]
-
+        step = Signal()
         m.d.comb += [
-            self.o.meta.mac.eq(meta.mac),
-            self.o.meta.destination.eq(meta.destination),
-            self.o.meta.protocol.eq(ipv4.UDP),
-            self.o.meta.length.eq(length),
+            o.payload.data.eq(octet),
+            step.eq(i.valid & (o.ready | ~given)),
         ]
-        with m.FSM():
-            with m.State("SUM"):
-                m.d.comb += [step.eq(i.valid), adding.eq(1)]
-                with m.If(i.valid):
+        with m.FSM() as fsm:
+            with m.State("HEADER"):
+                m.d.comb += o.valid.eq(i.valid & given)
+                with m.If(step):
                     m.d.sync += at.eq(at + 1)
-                    with m.If(at == 15):
-                        m.d.sync += at.eq(length_at)
-                        m.next = "LENGTH AGAIN"
-            with m.State("LENGTH AGAIN"):
-                m.d.comb += [step.eq(1), adding.eq(1)]
-                m.d.sync += at.eq(at + 1)
-                with m.If(at == 15):
-                    m.d.sync += at.eq(header)
-                    m.next = "NUMBERS"
-            with m.State("NUMBERS"):  # and the carries come to rest
-                m.d.comb += [o.valid.eq(1), o.payload.data.eq(octet), step.eq(o.ready)]
-                with m.If(o.ready):
-                    m.d.sync += at.eq(at + 1)
-                    with m.If(at == 15):
-                        m.next = "CHECKSUM"
-            with m.State("CHECKSUM"):
-                m.d.comb += [o.valid.eq(1), o.payload.data.eq(column), step.eq(o.ready)]
-                with m.If(o.ready):
-                    m.d.sync += at.eq(at + 1)
-                    with m.If(at == 1):
+                    m.d.sync += [column.eq(other), Cat(other, carry).eq(_add(column, ~octet, carry))]
+                    with m.If(at == begin - 1):
                         m.next = "DATA"
             with m.State("DATA"):
                 m.d.comb += [o.payload.eq(i.payload), o.valid.eq(i.valid), i.ready.eq(o.ready)]
-                m.d.sync += [
-                    at.eq(0),
-                    *(signal.eq(Value.cast(signal.init)) for signal in (column, other, carry)),
-                ]
                 with m.If(i.valid & o.ready & i.payload.end):
-                    m.next = "SUM"
+                    m.next = "HEADER"
+        with m.If(fsm.ongoing("DATA") | (at[1:].any() & ~at[3:].any())):  # before and in the hardware address
+            m.d.sync += [column.eq(0), other.eq(0), carry.eq(0)]
         return m
 
 

@@ -106,6 +106,27 @@ class RegisterSpec(FifoSpec):
         m.d.comb += [Assume(i.meta == begun, "numbered"), Assert(~o.stream.valid | (o.meta == gone), "meta")]
 
 
+FREE = "free = ~o.valid | o.ready"
+STAGED = "o.valid.eq(i.valid & ~copied)"
+WAITS = "i.ready.eq(free & (copied | ~i.payload.end))"
+
+
+class StageSpec(RegisterSpec):
+    """The same of a register with one place."""
+
+    bugs = (
+        Bug("o.steady", FREE, "free = C(1)"),
+        Bug("o.bad_only_at_end", STAGED, STAGED + ", o.payload.bad.eq(i.payload.data[0])"),
+        Bug("order", FREE, FREE + " | i.valid"),
+        Bug("nothing_else", STAGED, "o.valid.eq(1)"),
+        Bug("o.meta_steady", WAITS, "i.ready.eq(free)"),
+        Bug("meta", WAITS, "i.ready.eq(free)"),
+    )
+
+    def block(self) -> Any:
+        return self.gates.FrameStage(2)
+
+
 TAKEN = "m.d.sync += o.valid.eq(~o.ready)"
 COMES = "o.valid.eq(i.valid & ~gone)"
 PLACED = f"m.d.sync += [o.payload.eq(i.payload), {COMES}]"
@@ -231,6 +252,7 @@ class LossyFifoSpec(Spec):
 SPECS: tuple[type[Spec], ...] = (
     FifoSpec,
     RegisterSpec,
+    StageSpec,
     MessageRegisterSpec,
     AsyncFifoSpec,
     LossyFifoSpec,

@@ -21,8 +21,8 @@ class ReassemblySpec(Spec):
     fragments, unit = 3, 8  # 24 octets are no power of two, so an address may be outside
     quick, deep = 20, 34
     bugs: tuple[Bug, ...] = (
-        Bug("present", "has_last & (units == last_start)", "has_last"),
-        Bug("inside", "(stop > room)", "(stop > room + 1)"),
+        Bug("present", "has_last & (units == self.total[_UNIT:])", "has_last"),
+        Bug("inside", "above(stop, room)", "above(stop, room + 1)"),
     )
 
     def block(self) -> Any:
