@@ -31,9 +31,9 @@ class Arp(wiring.Component):
     never from a reply that was not asked for; a probe (from 0.0.0.0) is answered and not remembered.
 
     `i` is always ready, an octet each cycle, one message after another. A message is learned from and then answered, which
-    begins up to 46 cycles after its end plus 12, with 16 entries. One reply is being sent and one waits; when the next
-    message comes, that which waits is given up: `drop_busy`. So is a message that comes so soon that the one before it is
-    still being learned from. Replies and requests are sent in turn. `drop_arp`: see `ArpRx`.
+    begins up to 130 cycles after its end, with 16 entries. One reply is being sent and one waits; when the next message
+    comes, that which waits is given up: `drop_busy`. So is a message that comes so soon that the one before it is still
+    being learned from. Replies and requests are sent in turn. `drop_arp`: see `ArpRx`.
     """
 
     def __init__(self, cache_width: int = 4, resolving: int | None = None) -> None:
@@ -76,8 +76,13 @@ class Arp(wiring.Component):
             self.drop_arp.eq(rx.drop_arp),
         ]
 
-        # A message is learned from first: the answer takes its octets out of a ring.
-        m.d.comb += [rx.hold.eq(cache.learn | tx.reply | tx.rotate), rx.rotate.eq(tx.rotate)]
+        # A message is learned from first, and then answered to the addresses that were written as they came.
+        m.d.comb += [
+            rx.hold.eq(cache.learn | tx.reply),
+            tx.write.eq(rx.take),
+            tx.place.eq(rx.place),
+            tx.octet.eq(self.i.stream.payload.data),
+        ]
         with m.If(cache.learned):
             m.d.sync += cache.learn.eq(0)
         replying = Signal()
@@ -85,7 +90,7 @@ class Arp(wiring.Component):
             m.d.sync += [cache.learn.eq(~message.probe), replying.eq(message.for_us & message.request)]
 
         asking, ask_ip = Signal(), Signal(32)
-        m.d.comb += cache.ask_ready.eq(~asking & ~tx.loading)
+        m.d.comb += cache.ask_ready.eq(~asking & ~tx.requesting)
         with m.If(cache.ask):
             m.d.sync += [asking.eq(1), ask_ip.eq(cache.ask_ip)]
 
@@ -95,7 +100,7 @@ class Arp(wiring.Component):
             m.d.sync += announcing.eq(1)
 
         replied = Signal()  # the last was a reply
-        m.d.comb += [tx.ip.eq(ask_ip), tx.octet.eq(message.mac[:8])]
+        m.d.comb += tx.ip.eq(ask_ip)
         with m.If(tx.ready):
             with m.If(announcing):
                 m.d.comb += tx.announce.eq(1)

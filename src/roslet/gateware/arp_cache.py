@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Const, Module, Mux, Signal, Value
+from amaranth.hdl import Cat, Module, Mux, Signal, Value
 from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware import multicast
+from roslet.gateware.compare import by_pairs
 from roslet.gateware.meta import ADDRESSES, LookupSignature
 
 FREE, PENDING, KNOWN, FAILED = range(4)
@@ -24,9 +25,6 @@ RESOLVING = 4
 """How many addresses are asked for at once, unless told otherwise or there are fewer entries."""
 
 _MIN_VISIT = 6
-_SCAN_LAG = 3
-"""An entry is visible two cycles after it is addressed, since block RAM is slow, and whether it is the one that is looked
-for known a cycle later."""
 
 
 class ArpCache(wiring.Component):
@@ -39,11 +37,11 @@ class ArpCache(wiring.Component):
     `retry_count` requests (one at least) were sent; `retry_interval` after the last of them it has `failed`, and for as long
     again, so that whoever asks now and then gets to know; after that a question begins anew. Otherwise nothing is known yet:
     a request is under way, or `resolving` others are.
-    An answer takes 4 cycles where it is computed, up to 2**width + 7 otherwise, and while the cache is busy as much again
-    and 7 more.
+    An answer takes 7 cycles where it is computed, up to 2**width + 6 otherwise, and while the cache is busy up to
+    5 * 2**width + 18 besides.
 
     **Requests**: `ask` is high for one cycle when a request for `ask_ip` shall be sent; never while `ask_ready` is low. The
-    first is sent 3 cycles after the answer to the question, or else when the entry is visited next.
+    first is sent up to 2**(width + 1) + 7 cycles after the answer to the question, or else when the entry is visited next.
 
     **What is learned**: while `learn` is high, which holds until `learned` is, `ip` has the hardware address `mac`. An entry
     of that address takes it, whether it was asked for or not, as in RFC 826. Without an entry the address is remembered only
@@ -53,7 +51,12 @@ class ArpCache(wiring.Component):
     is forgotten `timeout` after its address was last learned.
 
     Time is counted in ticks of `tick` cycles (1024 with 16 entries), in which each entry is visited once: intervals are met
-    within one tick and the cycles of an answer. `enable` stays high once it is. All is forgotten at reset.
+    within one tick and the cycles of an answer, and a request within another for each that is due in the same tick. `enable`
+    stays high once it is. All is forgotten at reset.
+
+    All that is done is a round: the entries are read one after another, an entry a cycle. What is looked for is compared
+    with each, and what is learned written where it is found, which ends the first round; a second finds it a place; and by
+    a round for each tick, and one for each new question, all are visited.
     """
 
     def __init__(self, width: int = 4, resolving: int | None = None) -> None:
@@ -65,9 +68,8 @@ class ArpCache(wiring.Component):
             raise ValueError(f"of {2**width} entries 1 to {2**width} can be resolving, not {resolving}")
         self._width = width
         self._resolving = resolving
-        # A visit waits until what the cache is busy with is over, which must be before the next is due.
-        self._visit = max(_MIN_VISIT, width + 2)
-        self.tick: int = 2 ** (width + self._visit)
+        self._tick_bits = width + max(_MIN_VISIT, width + 2)
+        self.tick: int = 2**self._tick_bits
         super().__init__(
             {
                 "enable": In(1),
@@ -90,159 +92,166 @@ class ArpCache(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         lookup = self.lookup
-        count = 2**self._width
-        tick = self._width + self._visit
+        count, tick = 2**self._width, self._tick_bits
         pair = data.StructLayout({"ip": 32, "mac": 48})
-        status = data.StructLayout({"state": 2, "tries": TRIES, "left": INTERVAL - tick})
+        status = data.StructLayout({"state": 2, "tries": TRIES, "age": INTERVAL - tick})
         block = {"ram_style": "block"}  # of LUTs it would be a twentieth of all that UDP takes
-        m.submodules.pairs = pairs = memory.Memory(shape=pair, depth=count, init=[], attrs=block)
+        # Behind the pairs of the entries, as many with the hardware address of everybody.
+        init: list[dict[str, int]] = [{}] * count + [{"mac": multicast.number(multicast.BROADCAST)}] * count
+        m.submodules.pairs = pairs = memory.Memory(shape=pair, depth=2 * count, init=init, attrs=block)
         m.submodules.statuses = statuses = memory.Memory(shape=status, depth=count, init=[], attrs=block)
         pair_read, pair_write = pairs.read_port(), pairs.write_port()
         status_read, status_write = statuses.read_port(), statuses.write_port()
-        index = Signal(self._width)  # of the entry that is written, or read, to be visible two cycles later
-        for port in (pair_read, pair_write, status_read, status_write):
-            m.d.comb += port.addr.eq(index)
+
+        # A round: an entry is addressed, comes two cycles later since block RAM is slow, is shown in the next, when it is
+        # known what it is equal to, and written in the one after.
+        index, read, comes, at = (Signal(self._width, name=name) for name in ("index", "read", "comes", "at"))
+        reading, coming, showing, last = Signal(), Signal(), Signal(), Signal()
+        pair_comes, status_comes = Signal(pair), Signal(status)
         known, entry, new = Signal(pair), Signal(status), status_write.data
-        m.d.sync += [known.eq(pair_read.data), entry.eq(status_read.data)]
+        m.d.comb += last.eq(showing & (at == count - 1))
+        m.d.sync += [index.eq(index + 1), read.eq(index), comes.eq(read), at.eq(comes)]
+        m.d.sync += [reading.eq(1), coming.eq(reading), showing.eq(coming)]
+        m.d.sync += [pair_comes.eq(pair_read.data), status_comes.eq(status_read.data)]
+        m.d.sync += [known.eq(pair_comes), entry.eq(status_comes)]
+        put, update = Signal(), Signal()  # the entry that is shown is another from now on; its status is
+        m.d.sync += [pair_write.addr.eq(at), pair_write.en.eq(put)]
+        m.d.sync += [status_write.addr.eq(at), status_write.en.eq(put | update)]
 
-        # What is being done
+        # What is looked for, and has been found
         key = Signal(32)
-        learning, learnt, computed = Signal(), Signal(), Signal()  # `learnt`: what was done last
-        group, everybody, refused = Signal(), Signal(), Signal()
+        finding, learning, learnt = Signal(), Signal(), Signal()  # `learnt`: what was done last
+        same, match = Signal(32 // 2), Signal()
+        m.d.sync += same.eq(by_pairs(pair_comes.ip, key))
+        m.d.comb += match.eq(same.all() & (entry.state != FREE))
+        answer = Signal(2)  # the state of the entry that was found, or FREE
+        group_mac = multicast.hardware_address(lookup.ip)
+        mac = Signal(48, init=multicast.number(multicast.PREFIX))
+        free, pending = Signal(), Signal(range(self._resolving + 1))
+        turn = Signal(self._width)  # where a place is looked for first: in turn they are displaced
 
-        # What a scan has found
-        step = Signal(range(count + _SCAN_LAG))
-        read, reading, shown, showing = Signal(self._width), Signal(), Signal(self._width), Signal()
-        hit, hit_at = Signal(), Signal(self._width)
-        free, usable, candidate = Signal(), Signal(), Signal(self._width)
-        pending = Signal(range(self._resolving + 1))
-        full = pending == self._resolving
-        turn = Signal(self._width)  # a scan begins here: the first that is displaced
+        # What is known of the question, from a cycle after it has been put. Each bit has a register, and for each Yosys
+        # finds the least LUTs.
+        own, mask, gateway = (
+            Value.cast(value) for value in (self.addresses.ip, self.addresses.mask, self.addresses.gateway)
+        )
+        ip, asked, group = lookup.ip, Signal(), multicast.is_multicast(lookup.ip)
+        inside, ours, zero, ones, host_ones = (Signal() for _ in range(5))
+        m.d.sync += [
+            asked.eq(lookup.valid & ~lookup.done),
+            inside.eq(((ip ^ own) & mask) == 0),
+            ours.eq(ip == own),
+            zero.eq(ip[:8] == 0),
+            ones.eq(ip.all()),
+            host_ones.eq((ip | mask).all()),
+        ]
+        # In the order of the wire bit 25 is the last but one of the mask.
+        everybody = ones | (inside & host_ones & ~mask[25])
+        nowhere = ~inside & (gateway[:8] == 0) & ~group & ~ones
+        refused = ~self.enable | ours | zero | nowhere
+        computed = group | everybody | refused
 
         # Time
-        clock, due, visited = Signal(self._visit), Signal(), Signal(self._width)
+        clock, due, fresh, aging = Signal(tick), Signal(), Signal(), Signal()
+        old, late = Signal(), Signal()
         m.d.sync += clock.eq(clock + 1)
-        with m.If(clock == 0):
-            m.d.sync += due.eq(1)
-        less = Signal(INTERVAL - tick + 1)
-        m.d.comb += less.eq(Value.cast(entry.left) - 1)
+        m.d.sync += [
+            old.eq(status_comes.age == self.timeout[tick:]),
+            late.eq(status_comes.age == self.retry_interval[tick:]),
+        ]
         asking = entry.state == PENDING
         unasked = asking & (entry.tries == 0)
-        over = less[-1] | unasked
+        over = (aging & Mux(entry.state == KNOWN, old, late)) | unasked
 
+        m.d.sync += [new.age.eq(entry.age + aging), new.tries.eq(entry.tries + over)]
+        m.d.sync += new.state.eq(Mux(learning, KNOWN, PENDING))
         m.d.comb += [
             pair_write.data.ip.eq(key),
             pair_write.data.mac.eq(self.mac),
-            new.left.eq(Mux(learning, self.timeout[tick:], Mux(over, self.retry_interval[tick:], less[:-1]))),
             self.ask_ip.eq(known.ip),
-            lookup.mac.eq(
-                Mux(
-                    everybody,
-                    Const(multicast.number(multicast.BROADCAST), 48),
-                    Mux(group, multicast.hardware_address(lookup.ip), known.mac),
-                )
-            ),
+            lookup.mac.eq(mac),
+            pair_read.addr.eq(Cat(index, finding & ~learning & everybody)),
+            status_read.addr.eq(index),
         ]
-        m.d.sync += [read.eq(index), shown.eq(read), showing.eq(reading)]
+        m.d.sync += self.learned.eq(0)
 
-        with m.FSM(init="CLEAR"):
+        with m.FSM(init="CLEAR") as fsm:
             with m.State("CLEAR"):
-                m.d.comb += [new.state.eq(FREE), status_write.en.eq(1)]
-                m.d.sync += index.eq(index + 1)
-                with m.If(index == count - 1):
+                m.d.comb += update.eq(1)
+                m.d.sync += new.state.eq(FREE)
+                with m.If(last):
                     m.next = "IDLE"
             with m.State("IDLE"):
-                m.d.sync += [index.eq(turn), step.eq(0), reading.eq(0), showing.eq(0), pending.eq(0)]
-                m.d.sync += [hit.eq(0), free.eq(0), usable.eq(0), computed.eq(0)]
-                with m.If(due):
-                    m.d.sync += [due.eq(0), index.eq(visited), visited.eq(visited + 1), learning.eq(0)]
-                    m.next = "READ"
-                with m.Elif(self.learn & ~(learnt & lookup.valid)):
+                with m.If(due | fresh):
+                    m.d.sync += [due.eq(0), fresh.eq(0), aging.eq(due)]
+                    m.next = "VISIT"
+                with m.Elif(self.learn & ~self.learned & ~(learnt & lookup.valid)):
                     m.d.sync += [learning.eq(1), learnt.eq(1), key.eq(self.ip)]
-                    m.next = "SCAN"
-                with m.Elif(lookup.valid):
-                    own = Value.cast(self.addresses.ip)
-                    mask = Value.cast(self.addresses.mask)
-                    gateway = Value.cast(self.addresses.gateway)
-                    ip = lookup.ip
-                    inside = ((ip ^ own) & mask) == 0
-                    # In the order of the wire bit 25 is the last but one of the mask.
-                    subnet = inside & ~mask[25] & (ip | mask).all()
-                    nowhere = (ip[:8] == 0) | (~inside & (gateway[:8] == 0))
-                    is_group = multicast.is_multicast(ip)
-                    m.d.sync += [
-                        learning.eq(0),
-                        learnt.eq(0),
-                        key.eq(Mux(inside, ip, gateway)),
-                        group.eq(is_group),
-                        everybody.eq(subnet | ip.all()),
-                        refused.eq(~self.enable | (ip == own) | (nowhere & ~is_group & ~ip.all())),
-                    ]
-                    m.next = "SCAN"
-            with m.State("SCAN"):
-                m.d.sync += [step.eq(step + 1), index.eq(index + 1), reading.eq(step < count)]
+                    m.next = "FIND"
+                with m.Elif(asked):
+                    m.d.sync += [learning.eq(0), learnt.eq(0), key.eq(Mux(inside, ip, gateway))]
+                    m.next = "FIND"
+            with m.State("FIND"):
+                m.d.comb += finding.eq(1)
                 with m.If(showing):
-                    m.d.sync += [hit.eq((known.ip == key) & (entry.state != FREE)), hit_at.eq(shown)]
-                    with m.If(asking):
-                        m.d.sync += pending.eq(Mux(full, pending, pending + 1))
-                    with m.Elif(~free & ((entry.state == FREE) | ~usable)):
-                        m.d.sync += [candidate.eq(shown), usable.eq(1), free.eq(entry.state == FREE)]
-                with m.If(~learning & (group | everybody | refused)):
-                    m.d.sync += computed.eq(1)
-                    m.next = "ANSWER"
-                with m.Elif(hit):
-                    m.d.sync += index.eq(hit_at)
-                    m.next = "HIT"
-                with m.Elif(step == count + _SCAN_LAG - 1):
-                    m.d.sync += index.eq(candidate)
-                    m.next = "MISS"
-            with m.State("HIT"):
-                m.d.comb += new.state.eq(KNOWN)
+                    m.d.comb += put.eq(match & learning)
+                    m.d.sync += [free.eq(free | (entry.state == FREE)), pending.eq(pending + asking)]
+                    with m.If(match):
+                        m.d.sync += answer.eq(entry.state)
+                    with m.If(group & ~everybody):
+                        m.d.sync += mac[24:].eq(group_mac[24:])
+                    with m.Elif(match | everybody):
+                        m.d.sync += mac.eq(known.mac)
+                with m.If(last | (showing & (match | (computed & ~learning)))):
+                    m.next = "DECIDE"
+            with m.State("DECIDE"):
+                m.next = "IDLE"
                 with m.If(learning):
-                    m.d.comb += [self.learned.eq(1), pair_write.en.eq(1), status_write.en.eq(1)]
+                    m.d.sync += self.learned.eq(1)
+                    with m.If(self.create & free & (answer == FREE)):
+                        m.d.sync += self.learned.eq(0)
+                        m.next = "PLACE"
+                with m.Else():
+                    m.d.comb += [
+                        lookup.done.eq(1),
+                        lookup.found.eq(Mux(computed, ~refused, answer == KNOWN)),
+                        lookup.failed.eq(Mux(computed, refused, answer == FAILED)),
+                    ]
+                    with m.If(~computed & (answer == FREE) & (pending != self._resolving)):
+                        m.next = "PLACE"
+            with m.State("PLACE"):
+                # There is one: where all are being asked for, `resolving` are, and nothing comes here.
+                m.d.comb += put.eq(showing & ~asking & ((entry.state == FREE) | ~free))
+                with m.If(put):
+                    m.d.sync += [self.learned.eq(learning), fresh.eq(~learning)]
+                    with m.If(~learning):
+                        m.d.sync += turn.eq(comes)  # which is one further
                     m.next = "IDLE"
-                with m.Else():
-                    m.next = "HIT READ"
-            with m.State("HIT READ"):
-                m.next = "ANSWER"
-            with m.State("ANSWER"):
-                m.d.comb += [
-                    lookup.done.eq(1),
-                    lookup.found.eq(Mux(computed, ~refused, entry.state == KNOWN)),
-                    lookup.failed.eq(Mux(computed, refused, entry.state == FAILED)),
-                ]
-                m.next = "IDLE"
-            with m.State("MISS"):
-                m.next = "IDLE"
-                m.d.comb += [new.state.eq(Mux(learning, KNOWN, PENDING)), pair_write.en.eq(status_write.en)]
-                with m.If(learning):
-                    m.d.comb += [self.learned.eq(1), status_write.en.eq(free & self.create)]
-                with m.Else():
-                    m.d.comb += lookup.done.eq(1)
-                    with m.If(usable & ~full):
-                        m.d.comb += status_write.en.eq(1)
-                        m.d.sync += turn.eq(candidate + 1)
-                        m.next = "READ"
-            with m.State("READ"):
-                m.next = "READ ENTRY"
-            with m.State("READ ENTRY"):
-                m.next = "VISIT"
             with m.State("VISIT"):
-                m.d.comb += [
-                    new.state.eq(entry.state),
-                    new.tries.eq(entry.tries),
-                    status_write.en.eq(self.enable & (entry.state != FREE)),
-                ]
+                exhausted = ~unasked & (entry.tries >= self.retry_count)
+                m.d.comb += update.eq(showing & (entry.state != FREE))
+                m.d.sync += new.state.eq(entry.state)
                 with m.If(over):
                     with m.If(~asking):
-                        m.d.comb += new.state.eq(FREE)
-                    with m.Elif(~unasked & (entry.tries >= self.retry_count)):
-                        m.d.comb += new.state.eq(FAILED)
+                        m.d.sync += new.state.eq(FREE)
+                    with m.Elif(exhausted):
+                        m.d.sync += new.state.eq(FAILED)
                     with m.Else():
-                        m.d.comb += [
-                            new.tries.eq(entry.tries + 1),
-                            status_write.en.eq(self.ask_ready & self.enable),
-                            self.ask.eq(self.ask_ready & self.enable),
-                        ]
-                m.next = "IDLE"
+                        m.d.comb += [update.eq(self.ask), self.ask.eq(showing & self.ask_ready)]
+                with m.If(last):
+                    m.next = "IDLE"
+
+        with m.If(clock == 0):
+            m.d.sync += due.eq(1)
+        with m.If(~fsm.ongoing("VISIT") | over):
+            m.d.sync += new.age.eq(0)
+        with m.If(~fsm.ongoing("VISIT")):
+            m.d.sync += new.tries.eq(0)
+        with m.If(fsm.ongoing("DECIDE")):
+            m.d.sync += index.eq(turn)
+        with m.If(fsm.ongoing("IDLE")):
+            m.d.sync += [index.eq(0), answer.eq(FREE), free.eq(0), pending.eq(0)]
+            m.d.sync += mac.eq(mac.init)
+        with m.If(fsm.ongoing("IDLE") | fsm.ongoing("DECIDE")):
+            m.d.sync += [reading.eq(0), coming.eq(0), showing.eq(0)]
         return m

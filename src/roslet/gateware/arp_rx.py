@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
+from amaranth.hdl import Cat, Const, Module, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -24,6 +24,9 @@ MAC_SIZE, IP_SIZE = 6, 4
 SENDER_SIZE = MAC_SIZE + IP_SIZE
 """Octets of the sender's addresses; the target's are alike."""
 
+_BEGIN = SENDER_SIZE - FIXED_SIZE
+"""Octets are counted so that what is before the addresses ends with the same number as each ten of these."""
+
 CONSTANTS = {
     "hardware": arp.ETHERNET,
     "protocol": ethernet.IPV4,
@@ -44,9 +47,8 @@ class ArpRx(wiring.Component):
 
     Ports: `i`, messages, with any padding; `message`, and `seen`, high for one cycle when a message has ended well and is
     what `message` shows. That stays until `overwritten` is high, in the cycle in which the sender's address of another one
-    comes; where `hold` is high then, the other one is dropped instead. So it stays for 8 cycles at least. In a cycle with
-    `rotate` high, which must be within `hold`, `message.mac` and after it `message.ip`, as a ring of 10 octets, move on to
-    the next octet.
+    comes; where `hold` is high then, the other one is dropped instead. So it stays for 8 cycles at least. With `take` the
+    octet at `i` is number `place` of the ten of `message.mac` and `message.ip`, from `overwritten` on.
 
     `i` is always ready: an octet each cycle. A message is seen one cycle after its end.
 
@@ -61,8 +63,9 @@ class ArpRx(wiring.Component):
                 "i": In(FrameSignature(ETHERNET_RX)),
                 "addresses": In(ADDRESSES),
                 "hold": In(1),
-                "rotate": In(1),
                 "overwritten": Out(1),
+                "take": Out(1),
+                "place": Out(range(SENDER_SIZE), init=_BEGIN),
                 "seen": Out(1),
                 "message": Out(MESSAGE),
                 "drop_arp": Out(1),
@@ -77,7 +80,7 @@ class ArpRx(wiring.Component):
         ended = i.valid & end & ~i.payload.bad
         message = self.message
         sender = Cat(message.mac, message.ip)
-        at = Signal(range(SENDER_SIZE))  # within the state's octets
+        at = self.place  # within the state's octets
         in_ip = at[3] | (at[2] & at[1])  # MAC_SIZE or more
         first = at == MAC_SIZE
         last = at == SENDER_SIZE - 1
@@ -85,57 +88,54 @@ class ArpRx(wiring.Component):
         same = Signal()  # as our address, until here
         same_now = (octet == own) & (same | first)
         busy = Signal()  # why the message is dropped
+        constants = fixed()
+        constant = pick([Const(constants[(n - _BEGIN) % FIXED_SIZE], 8) for n in range(8)], at[:3])
         m.d.comb += i.ready.eq(1)
-        m.d.sync += self.seen.eq(0)
 
-        shift = Signal()
-        with m.If(shift | self.rotate):
-            m.d.sync += sender.eq(Cat(sender[8:], Mux(self.rotate, sender[:8], octet)))
+        with m.If(self.take):
+            m.d.sync += sender.eq(Cat(sender[8:], octet))
 
-        with m.If(i.valid & end):
-            m.d.sync += at.eq(0)
-        with m.Elif(i.valid):
+        with m.If(i.valid):
             m.d.sync += [at.eq(at + 1), same.eq(same_now)]
-        with m.FSM():
-            with m.State("FIXED"):
-                m.d.sync += busy.eq(0)
-                with m.If(i.valid & end):
-                    m.d.comb += self.drop_arp.eq(ended)
-                with m.Elif(i.valid):
-                    with m.If(at == FIXED_SIZE - 1):
-                        m.d.sync += [at.eq(0), message.request.eq(octet == arp.REQUEST)]
-                        m.next = "SENDER"
-                        with m.If((octet != arp.REQUEST) & (octet != arp.REPLY)):
-                            m.next = "DROP"
-                    with m.Elif(octet != pick([Const(octet, 8) for octet in fixed()], at[:3])):
+            with m.If(last):
+                m.d.sync += at.eq(0)
+            with m.If(end):
+                m.d.sync += at.eq(_BEGIN)
+        with m.FSM() as fsm:
+            with m.State("FIXED"), m.If(i.valid & ~end):
+                with m.If(last):
+                    m.d.sync += message.request.eq(octet == arp.REQUEST)
+                    m.next = "SENDER"
+                    with m.If((octet != arp.REQUEST) & (octet != arp.REPLY)):
                         m.next = "DROP"
-            with m.State("SENDER"):
-                with m.If(i.valid & end):
-                    m.d.comb += self.drop_arp.eq(ended)
+                with m.Elif(octet != constant):
+                    m.next = "DROP"
+            with m.State("SENDER"), m.If(i.valid):
+                with m.If(end):
                     m.next = "FIXED"
-                with m.Elif(i.valid & (at == 0) & (self.hold | octet[GROUP_BIT])):
+                with m.Elif((at == 0) & (self.hold | octet[GROUP_BIT])):
                     m.d.sync += busy.eq(self.hold)
                     m.next = "DROP"
-                with m.Elif(i.valid):
-                    m.d.comb += [shift.eq(1), self.overwritten.eq(at == 0)]
+                with m.Else():
+                    m.d.comb += [self.take.eq(1), self.overwritten.eq(at == 0)]
                     with m.If(in_ip):
                         m.d.sync += message.probe.eq((octet == 0) & (message.probe | first))
                     with m.If(last):
-                        m.d.sync += at.eq(0)
                         m.next = "TARGET"
                         with m.If(same_now):
                             m.next = "DROP"
-            with m.State("TARGET"):
-                with m.If(i.valid & end):
-                    m.d.comb += self.drop_arp.eq(ended)
+            with m.State("TARGET"), m.If(i.valid):
+                with m.If(end):
                     m.next = "FIXED"
-                with m.Elif(i.valid & last):
+                with m.Elif(last):
                     m.d.sync += message.for_us.eq(same_now)
                     m.next = "PADDING"
-            with m.State("PADDING"), m.If(i.valid & end):
-                m.d.sync += self.seen.eq(ended)
-                m.next = "FIXED"
-            with m.State("DROP"), m.If(i.valid & end):
-                m.d.comb += [self.drop_arp.eq(ended & ~busy), self.drop_busy.eq(ended & busy)]
-                m.next = "FIXED"
+            for state in ("PADDING", "DROP"):
+                with m.State(state), m.If(i.valid & end):
+                    m.next = "FIXED"
+        good = fsm.ongoing("PADDING")
+        m.d.sync += self.seen.eq(ended & good)
+        m.d.comb += [self.drop_arp.eq(ended & ~good & ~busy), self.drop_busy.eq(ended & busy)]
+        with m.If(fsm.ongoing("FIXED")):
+            m.d.sync += busy.eq(0)
         return m

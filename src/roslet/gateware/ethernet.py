@@ -59,16 +59,10 @@ class EthernetRx(wiring.Component):
 
         # The destination is compared as its octets pass; a header is longer than it, so that it is known by the body.
         i = self.i.stream
-        at = Signal(range(ADDRESS + 1))
-        taken = i.valid & i.ready
-        with m.If(taken):
-            with m.If(i.payload.end):
-                m.d.sync += at.eq(0)
-            with m.Elif(at != ADDRESS):
-                m.d.sync += at.eq(at + 1)
-        comparing = taken & (at != ADDRESS)
+        at = reader.at
+        comparing = i.valid & ~(at[3] | (at[2] & at[1]))  # less than ADDRESS
         group = Signal()
-        with m.If(taken & (at == 0)):
+        with m.If(i.valid & (at == 0)):
             m.d.sync += group.eq(i.payload.data[GROUP_BIT])
         wanted = [
             (Const(1), Value.cast(self.addresses.mac)),
@@ -79,7 +73,7 @@ class EthernetRx(wiring.Component):
             wanted.append((self.groups[n].valid, multicast.hardware_address(self.groups[n].ip)))
         same = Signal(len(wanted))
         for bit, (valid, address) in zip(same, wanted, strict=True):
-            octet = pick(octets(address), at)
+            octet = pick(octets(address), at[:3])
             with m.If(comparing):
                 m.d.sync += bit.eq((i.payload.data == octet) & Mux(at == 0, valid, bit))
 

@@ -12,7 +12,6 @@ from amaranth.hdl import Cat, Module, ShapeLike, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from roslet.gateware.octets import octets
 from roslet.gateware.stream import FrameSignature
 from roslet.wire.fields import OCTETS, Field
 
@@ -37,11 +36,12 @@ class HeaderReader(wiring.Component):
     """Takes the header off each frame.
 
     Ports: `i`, frames with `below` as their meta (none where None); `o`, what follows the header, with the kept fields
-    beside it: `o.meta.header`, and `o.meta.below`, which is `i.meta` passed through. `drop_short`: a good frame ended within
-    its header.
+    beside it: `o.meta.header`, and `o.meta.below`, which is `i.meta` passed through. `at`, which octet of the header comes
+    next, or their number behind it. `drop_short`: a good frame ended within its header.
 
     Throughput one octet a cycle. Header octets are taken in one cycle each; the rest passes without a register, so `o` is
-    valid in the cycle in which `i` is. Holds nothing but the kept fields. A frame that ends within its header gives nothing.
+    valid in the cycle in which `i` is. Holds the header from the first field on that is kept, in a shift register. A frame
+    that ends within its header gives nothing.
     """
 
     def __init__(
@@ -58,6 +58,7 @@ class HeaderReader(wiring.Component):
             {
                 "i": In(FrameSignature(below)),
                 "o": Out(FrameSignature(data.StructLayout(meta))),
+                "at": Out(range(self._size + 1)),
                 "drop_short": Out(1),
             }
         )
@@ -65,9 +66,14 @@ class HeaderReader(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         i, o = self.i.stream, self.o.stream
-        header = Signal(self._header)
-        at = Signal(range(self._size + 1))
-        m.d.comb += [o.payload.eq(i.payload), self.o.meta.header.eq(header)]
+        at = self.at
+        kept = [field for field in self._fields if field.name in self._header.members]
+        first = kept[0].offset
+        rest = Signal(8 * (self._size - first))
+        m.d.comb += o.payload.eq(i.payload)
+        for field in kept:
+            value = rest[8 * (field.offset - first) :][: field.bits]
+            m.d.comb += self.o.meta.header[field.name].eq(wire_order(field, value))
         if self._below is not None:
             m.d.comb += self.o.meta.below.eq(self.i.meta)
         with m.If(at == self._size):
@@ -77,15 +83,8 @@ class HeaderReader(wiring.Component):
         with m.Else():
             m.d.comb += i.ready.eq(1)
             with m.If(i.valid):
-                m.d.sync += at.eq(at + 1)
+                m.d.sync += [at.eq(at + 1), rest.eq(Cat(rest[8:], i.payload.data))]
                 with m.If(i.payload.end):
                     m.d.sync += at.eq(0)
                     m.d.comb += self.drop_short.eq(~i.payload.bad)
-        for field in self._fields:
-            if field.name not in self._header.members:
-                continue
-            kept = octets(wire_order(field, Value.cast(header[field.name])))
-            for n, octet in enumerate(kept):
-                with m.If(i.valid & (at == field.offset + n)):
-                    m.d.sync += octet.eq(i.payload.data)
         return m

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal, Value
-from amaranth.lib import wiring
+from amaranth.hdl import Array, C, Cat, Module, Mux, Signal, Value
+from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
 from roslet.gateware import multicast
 from roslet.gateware.checksum import SerialSum
-from roslet.gateware.header import wire_order
 from roslet.gateware.igmp_rx import IgmpRx
-from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, HOP, IPV4_RX
+from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, IPV4_RX
 from roslet.gateware.octets import octets, pick
 from roslet.gateware.stream import FrameSignature
 from roslet.wire.fields import Field
@@ -46,20 +45,51 @@ _IPV4 = {
     "ttl": 1,  # RFC 2236, 2
     "protocol": ipv4.IGMP,
 }
-_SOURCE = next(field.offset for field in ipv4.FIELDS if field.name == "source")
-_CHECKSUMS = 5
-"""Bits 3 to 1 of the places of both checksums, 10 and 26, and of no other."""
-
 _IGMP = {"type": igmp.REPORT, "max_response": 0}
 
+_ROW = data.StructLayout(
+    {"octet": 8, "own": 1, "group": 1, "low": 1, "place": 2, "spell": 1, "add": 1, "clear": 1}
+    | {"valid": 1, "end": 1}
+)
+"""What is done with one octet of a report, which is `octet`, or number `place` of our address or of that of the group, the
+latter without its highest bit where `low`. The sum is `spell`ed out in place of it, or `clear`ed, or it is `add`ed. It is
+sent where `valid`; `end` is the last row."""
+_DEPTH = 64
 
-def _fields(table: tuple[Field, ...], values: Mapping[str, int | Value]) -> list[Value]:
-    """The fields of a header, as they lie on the wire."""
-    return [
-        wire_order(field, Const(value, field.bits) if isinstance(value, int) else value)
-        for field in table
-        for value in (values[field.name],)
+
+def _octets(table: tuple[Field, ...], values: Mapping[str, int]) -> list[dict[str, int]]:
+    """The rows of a header."""
+    rows: list[dict[str, int]] = []
+    for field in table:
+        for n in range(field.bits // 8):
+            if field.name in values:
+                rows.append({"octet": values[field.name].to_bytes(field.bits // 8, "big")[n]})
+            elif field.name == "checksum":
+                rows.append({"spell": 1})
+            else:
+                rows.append({"own" if field.name == "source" else "group": 1, "place": n})
+    return rows
+
+
+def _program() -> list[dict[str, int]]:
+    """The rows of a report. What comes behind the header's checksum is summed before the packet begins, and the group, which
+    is in the message as well, to the message's sum as it passes as the destination: so all is summed when a checksum's turn
+    has come, whose own octets are zeros to it."""
+    header = _octets(ipv4.FIELDS, _IPV4)
+    source, group, alert = header[12:16], header[16:], [{"octet": octet} for octet in ROUTER_ALERT]
+    hop = [*({"octet": octet} for octet in multicast.PREFIX), {**group[1], "low": 1}, *group[2:]]
+    message = _octets(igmp.FIELDS, _IGMP)
+    add, clear, valid = {"add": 1}, {"clear": 1}, {"valid": 1}
+    sent = [
+        *hop,
+        *(row | add for row in header[:12]),
+        *(row | clear for row in source),
+        *(row | add for row in group),
+        *alert,
+        *(row | add for row in message),
+        {"end": 1},
     ]
+    return [*(row | add for row in (*source, *group, *alert)), *(row | valid for row in sent)]
 
 
 def _next(state: Value, taps: int) -> Value:
@@ -86,7 +116,7 @@ class Igmp(wiring.Component):
     heard, which IGMPv3 gave up (RFC 3376, A.2) and switches that snoop do without; leave messages, as `enable` and `valid`
     stay high; and the older and newer versions: a query of either is answered with a report of version 2.
 
-    `i` is always ready. A report begins 13 cycles after its time has come. `drop_igmp`: see `IgmpRx`.
+    `i` is always ready. A report begins 15 cycles after its time has come. `drop_igmp`: see `IgmpRx`.
     """
 
     def __init__(self, clock_hz: int, count: int = 1) -> None:
@@ -124,37 +154,36 @@ class Igmp(wiring.Component):
         joining = valid & ~joined
         m.d.sync += [joined.eq(valid), due.eq((due & ~sent | more | joining) & valid)]
 
-        # When: `left` ticks from now while `running`. `choosing` takes a random number of those that are allowed.
+        # When: in `left` ticks, or now where that is negative. While `choosing`, it is any number until it is one that is
+        # allowed.
         cycle, noise = Signal(24, init=1), Signal(16, init=1)
         tick = cycle == self._last
         m.d.sync += cycle.eq(Mux(tick, 1, _next(cycle, _CYCLE_TAPS)))
         m.d.sync += noise.eq(_next(noise, _TAPS))
-        running, choosing = Signal(), Signal()
-        limit = Signal(8)
-        delay = Signal(12)
-        left = Signal(12)
+        choosing, over = Signal(), Signal()
+        limit = Signal(8, init=RESPONSE)
+        left = Signal(13, init=-1)
         repeats = Signal(range(REPEATS + 1))
-        m.d.comb += delay.eq(noise ^ self.addresses.mac[-12:])
-        with m.If(running & tick & (left != 0)):
+        m.d.comb += over.eq(left[-1] & ~choosing)
+        with m.If(choosing & (left[4:] < limit)):
+            m.d.sync += choosing.eq(0)
+        with m.Elif(choosing):
+            m.d.sync += left.eq((noise ^ self.addresses.mac[-12:])[:12])
+        with m.Elif(tick & ~left[-1]):
             m.d.sync += left.eq(left - 1)
-        with m.If(choosing):
-            within = Mux(running, left, delay)[4:] < limit
-            m.d.sync += [running.eq(within), choosing.eq(~within)]
-            with m.If(~running):
-                m.d.sync += left.eq(delay)
-        over = running & (left == 0)
         asked = rx.query & self.enable
         again = over & (due == 0) & (repeats != 0)
-        with m.If(over & (due == 0)):
-            m.d.sync += running.eq(0)
+        m.d.comb += more.eq(Mux(asked, rx.named, valid & again.replicate(self._count)))
         with m.If(again):
             m.d.sync += repeats.eq(repeats - 1)
-        m.d.comb += more.eq(Mux(asked, rx.named, valid & again.replicate(self._count)))
+        with m.If(asked):
+            m.d.sync += limit.eq(rx.max_response)
+        with m.If(again | (asked & (rx.max_response == 0))):
+            m.d.sync += limit.eq(RESPONSE)
         with m.If(asked | again):
             m.d.sync += choosing.eq(1)
-            m.d.sync += limit.eq(Mux(asked & (rx.max_response != 0), rx.max_response, RESPONSE))
         with m.If(joining.any() | (asked & choosing)):
-            m.d.sync += [running.eq(1), left.eq(0)]
+            m.d.sync += [choosing.eq(0), left.eq(-1)]
         with m.If(joining.any()):
             m.d.sync += repeats.eq(REPEATS)
 
@@ -165,59 +194,40 @@ class Igmp(wiring.Component):
         """Send a report of each group that is `due`, when it is `over`."""
         o = self.o.stream
         m.submodules.sum = total = SerialSum()
+        rows = _program()
+        m.submodules.program = program = memory.Memory(
+            shape=_ROW, depth=_DEPTH, init=rows, attrs={"ram_style": "block"}
+        )
+        read = program.read_port()
+        row, at = Signal(_ROW), Signal(range(_DEPTH))  # that is done, and the number of that which is read
+        busy, advance = Signal(), Signal()
+        m.d.comb += [
+            read.addr.eq(at),
+            read.en.eq(advance),
+            advance.eq(busy & (~row.valid | o.ready)),
+        ]
+        with m.If(advance):  # behind the last row there are some that do nothing
+            m.d.sync += [at.eq(at + 1), row.eq(read.data)]
+
         which = Signal(range(self._count))
         group = Array(group.ip for group in self.groups)[which] if self._count > 1 else self.groups[0].ip
-        at = Signal(range(HEADER + igmp.SIZE + HOP))  # the destination of the frame is last, and sent first
-
-        # The checksums' own octets are summed as zeros. The group is added to the message's sum as it passes as the
-        # destination: so all is summed when that checksum's turn has come.
-        fields = [
-            *_fields(
-                ipv4.FIELDS,
-                {**_IPV4, "checksum": 0, "source": Value.cast(self.addresses.ip), "destination": group},
-            ),
-            Const(multicast.number(ROUTER_ALERT), 32),
-            *_fields(igmp.FIELDS, {**_IGMP, "checksum": 0, "group": group}),
-            multicast.hardware_address(group),
-        ]
-        octet = pick(octets(Cat(fields)), at)
-        spelling = (at[1:4] == _CHECKSUMS) & ~at[5]
-        in_source, in_alert = (at[2:] == n // 4 for n in (_SOURCE, ipv4.SIZE))
+        of_group = pick(octets(group), row.place) & Cat(C(-1, 7), ~row.low)
+        address = Mux(row.own, pick(octets(Value.cast(self.addresses.ip)), row.place), 0)
+        octet = row.octet | address | Mux(row.group, of_group, 0)
         m.d.comb += [
             total.data.eq(octet),
-            o.payload.data.eq(Mux(spelling, ~total.result, octet)),
+            total.add.eq(advance & row.add),
+            total.clear.eq(~busy | row.clear),
+            o.payload.data.eq(Mux(row.spell, ~total.result, octet)),
+            o.payload.end.eq(row.end),
+            o.valid.eq(row.valid),
             self.o.meta.type.eq(ethernet.IPV4),
+            sent.eq(Cat(which == n for n in range(len(due))) & (o.ready & row.end).replicate(len(due))),
         ]
-        with m.FSM():
-            with m.State("IDLE"):
-                m.d.comb += total.clear.eq(1)
-                m.d.sync += at.eq(_SOURCE)
-                for n in reversed(range(self._count)):
-                    with m.If(due[n]):
-                        m.d.sync += which.eq(n)
-                with m.If(over & due.any()):
-                    m.next = "ADDRESSES"
-            # What comes after the header's checksum is summed before the packet begins.
-            with m.State("ADDRESSES"):
-                m.d.comb += total.add.eq(1)
-                m.d.sync += at.eq(at + 1)
-                with m.If(at == HEADER - 1):
-                    m.d.sync += at.eq(HEADER + igmp.SIZE)
-                    m.next = "SEND"
-            with m.State("SEND"):
-                m.d.comb += [o.valid.eq(1), total.clear.eq(in_source)]
-                m.d.comb += total.add.eq(o.ready & ~in_alert & ~at[5])
-                with m.If(o.ready):
-                    m.d.sync += at.eq(at + 1)
-                    with m.If(at == HEADER + igmp.SIZE + HOP - 1):
-                        m.d.sync += at.eq(0)
-                    with m.If(at == HEADER + igmp.SIZE - 1):
-                        m.next = "END"
-            with m.State("END"):
-                m.d.comb += [
-                    o.valid.eq(1),
-                    o.payload.end.eq(1),
-                    sent.eq(Cat(which == n for n in range(len(due))) & o.ready.replicate(len(due))),
-                ]
-                with m.If(o.ready):
-                    m.next = "IDLE"
+        with m.If(busy):
+            m.d.sync += busy.eq(~(o.ready & row.end))
+        with m.Else():
+            m.d.sync += [busy.eq(over & due.any()), at.eq(0), row.eq(0)]
+            for n in reversed(range(self._count)):
+                with m.If(due[n]):
+                    m.d.sync += which.eq(n)

@@ -14,10 +14,11 @@ INTERVAL = 7
 TRIES = 2
 VISIT = 4
 TICK = 2 ** (WIDTH + VISIT)
-LATE = TICK + 8
+LATE = TICK + 2 * (2**WIDTH + 6)
 """Cycles by which an interval may be missed: a tick, and what the cache may be busy with when a visit is due."""
-MOST = 2 * (2**WIDTH + 7) + 7
-"""Cycles of an answer, by the contract."""
+MOST = 6 * (2**WIDTH + 4)
+PROMPT = 2 ** (WIDTH + 1) + 7
+"""Cycles of an answer, and from it to the first request, by the contract."""
 
 
 def number(*octets: int) -> Value:
@@ -31,8 +32,7 @@ OWN, GATEWAY, MASK = number(10, 0, 0, 1), number(10, 0, 0, 2), number(255, 255, 
 LOW = 2
 """Bits of the last octet, in which addresses differ."""
 
-TURN = 'm.d.sync += turn.eq(candidate + 1)\n                        m.next = "READ"'
-CLOCK = "clock, due, visited = Signal(self._visit"
+CLOCK = "clock, due, fresh, aging = Signal(tick"
 
 
 class _Cache(Spec):
@@ -74,11 +74,11 @@ class AnswersSpec(_Cache):
     """What needs no cache. `nobody`: what cannot be somebody's has failed. `everybody`, `group`: their hardware addresses
     are found."""
 
-    quick, deep = 14, 26
+    quick, deep = 22, 30
     bugs = (
-        Bug("nobody", "(ip == own) | ", ""),
-        Bug("everybody", "(nowhere & ~is_group & ~ip.all())", "(nowhere & ~is_group)"),
-        Bug("group", "(nowhere & ~is_group & ~ip.all())", "(nowhere & ~ip.all())"),
+        Bug("nobody", "| ours | zero", "| zero"),
+        Bug("everybody", "& ~group & ~ones", "& ~group"),
+        Bug("group", "& ~group & ~ones", "& ~ones"),
     )
 
     def properties(self, m: Module) -> None:
@@ -106,33 +106,20 @@ class AnswersSpec(_Cache):
                 m.d.comb += Cover(lookup.found, "somebody")
 
 
-class EntriesSpec(_Cache):
+class _Entries(_Cache):
     """`excluded`: `found` and `failed` exclude each other and come with `done`. `bound`: there is an answer within `MOST`
     cycles. And of one address, `watched`, any of the few that there are here:
 
     `learned`: what is found is what was learned last. `create`: and somebody had asked for it, or it came with `create`.
     `tried`: what has failed was asked for as often and as long ago as it should. `kept`: what is learned while it is being
     asked for, or first of all, is found until its time is over or another address is asked for. `ready`: no request while
-    none can be sent. `wanted`: only for what somebody asked of the cache. `prompt`: its first question has one 3 cycles
-    later. `apart`: requests keep their distance. `resolving`: nothing else is asked for meanwhile.
+    none can be sent. `wanted`: only for what somebody asked of the cache. `prompt`: the first question has one within
+    `PROMPT` cycles. `apart`: requests keep their distance. `resolving`: nothing else is asked for meanwhile.
     """
 
-    quick, deep = 29, 36
+    quick, deep = 44, 50
     # The first visit falls behind the first question: at reset nothing is there to be visited.
-    scale = (*_Cache.scale, (CLOCK, f"{CLOCK}, init=5"))
-    bugs = (
-        Bug("excluded", "refused, entry.state == FAILED", "refused, entry.state != FAILED"),
-        Bug("bound", "self.learn & ~(learnt & lookup.valid)", "self.learn"),
-        Bug("learned", "pair_write.en.eq(1), status_write.en.eq(1)", "status_write.en.eq(1)"),
-        Bug("create", "free & self.create", "free"),
-        Bug("tried", "~unasked & (entry.tries", "(entry.tries"),
-        Bug("kept", "Mux(learning, self.timeout", "Mux(0, self.timeout"),
-        Bug("ready", "self.ask.eq(self.ask_ready & self.enable)", "self.ask.eq(self.enable)"),
-        Bug("wanted", "Mux(learning, KNOWN, PENDING)", "PENDING"),
-        Bug("prompt", TURN, TURN.replace("READ", "IDLE")),
-        Bug("apart", "Mux(over, self.retry_interval[tick:], less[:-1])", "Mux(over, 0, less[:-1])"),
-        Bug("resolving", "usable & ~full", "usable"),
-    )
+    scale = (*_Cache.scale, (CLOCK, f"{CLOCK}, init={TICK - 25}"))
 
     def tie(self, m: Module, port: Value, value: Value) -> None:
         """The port is no input any more."""
@@ -183,28 +170,59 @@ class EntriesSpec(_Cache):
             m.d.sync += [told.eq(1), mac.eq(dut.mac), created.eq(created | dut.create), age.eq(0)]
             m.d.sync += [there.eq(lasts | waits | (first & dut.create)), pending.eq(0), requests.eq(0)]
 
-        begun = Signal(3)
-        m.d.sync += begun.eq(Cat(nothing & first, begun))
+        begun, begun_for = Signal(), Signal(5)  # a request is to be sent
+        with m.If(dut.ask | ~dut.ask_ready):
+            m.d.sync += begun.eq(0)
+        with m.Elif(nothing & first):
+            m.d.sync += begun.eq(1)
+        m.d.sync += begun_for.eq(Mux(begun, begun_for + 1, 0))
         failed = answered & lookup.failed
-        waited = Signal(5)
+        waited = Signal(6)
         m.d.sync += waited.eq(Mux(lookup.valid & ~lookup.done, waited + 1, 0))
+        claims = {
+            "excluded": ~(lookup.found & lookup.failed) & (lookup.done | ~(lookup.found | lookup.failed)),
+            "bound": waited < MOST,
+            "learned": ~found | (told & (lookup.mac == mac)),
+            "create": ~found | wanted | created,
+            "tried": ~failed | ((requests >= dut.retry_count) & (requests > 0) & ~waits),
+            "kept": ~(answered & lasts) | lookup.found,
+            "ready": ~dut.ask | (dut.ask_ready & dut.enable),
+            "wanted": ~asked | wanted,
+            "prompt": begun_for < PROMPT,
+            "apart": ~(asked & waits),
+            "resolving": ~(dut.ask & ~asked & waits),
+        }
+        m.d.comb += [Assert(claims[bug.property], bug.property) for bug in self.bugs]
         m.d.comb += [
-            Assert(~(lookup.found & lookup.failed), "excluded"),
-            Assert(lookup.done | ~(lookup.found | lookup.failed), "excluded"),
-            Assert(waited < MOST, "bound"),
-            Assert(~found | (told & (lookup.mac == mac)), "learned"),
-            Assert(~found | wanted | created, "create"),
-            Assert(~failed | ((requests >= dut.retry_count) & (requests > 0) & ~waits), "tried"),
-            Assert(~(answered & lasts) | lookup.found, "kept"),
-            Assert(~dut.ask | (dut.ask_ready & dut.enable), "ready"),
-            Assert(~asked | wanted, "wanted"),
-            Assert(~begun[2] | ~dut.ask_ready | dut.ask, "prompt"),
-            Assert(~(asked & waits), "apart"),
-            Assert(~(dut.ask & ~asked & waits), "resolving"),
             Cover(found, "found"),
             Cover(failed, "failed"),
             Cover(asked & (requests == 1), "again"),
         ]
 
 
-SPECS: tuple[type[Spec], ...] = (AnswersSpec, EntriesSpec)
+class EntriesSpec(_Entries):
+    """Of those properties: what is found, and has failed."""
+
+    bugs = (
+        Bug("excluded", "answer == FAILED", "answer != FAILED"),
+        Bug("learned", "put.eq(match & learning)", "update.eq(match & learning)"),
+        Bug("create", "self.create & free", "free"),
+        Bug("tried", "~unasked & (entry.tries", "(entry.tries"),
+        Bug("kept", "status_comes.age == self.timeout[tick:]", "status_comes.age == 0"),
+    )
+
+
+class RequestsSpec(_Entries):
+    """Of those properties: when there is an answer, and what is asked for."""
+
+    bugs = (
+        Bug("bound", "self.learn & ~self.learned & ~(learnt & lookup.valid)", "self.learn"),
+        Bug("ready", "self.ask.eq(showing & self.ask_ready)", "self.ask.eq(showing)"),
+        Bug("wanted", "Mux(learning, KNOWN, PENDING)", "PENDING"),
+        Bug("prompt", "fresh.eq(~learning)", "fresh.eq(0)"),
+        Bug("apart", "status_comes.age == self.retry_interval[tick:]", "1"),
+        Bug("resolving", " & (pending != self._resolving)", ""),
+    )
+
+
+SPECS: tuple[type[Spec], ...] = (AnswersSpec, EntriesSpec, RequestsSpec)
