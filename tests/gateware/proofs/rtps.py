@@ -8,7 +8,7 @@ from amaranth.hdl import Assert, Assume, Cat, Const, Cover, Module, Mux, Signal,
 
 from gateware.formal import Bug, Spec, assume_steady
 from roslet.gateware.rtps import composer, outbox, parameters, queue, submessages, tables, walker
-from roslet.gateware.rtps.rom import Op
+from roslet.gateware.rtps.rom import ALIGNMENT, DO, Op, _do
 from roslet.gateware.rtps.tables import Local, OwnMap, PeerMap
 from roslet.wire.rtps.submessage import GAP
 
@@ -351,9 +351,10 @@ class OutboxSpec(Spec):
             "o.payload.end.eq(over)",
             "o.payload.bad.eq(lane == 1), o.payload.end.eq(over)",
         ),
-        Bug("o.meta_steady", "meta.source_port.eq(self.source_port)", "meta.source_port.eq(self.port)"),
+        Bug("o.meta_steady", "meta.source_port.eq(self.source_port)", "meta.source_port.eq(self.word)"),
         Bug("length", "meta.length.eq(Cat(C(0, 2), count))", "meta.length.eq(Cat(C(0, 1), count))"),
-        Bug("where", "[ip.eq(self.ip), ", "[ip.eq(self.ip + 1), "),
+        Bug("where", "ip.eq(port), ", "ip.eq(port + 1), "),
+        Bug("where", "heading.eq(3)", "heading.eq(1)"),
         Bug("where", "meta.destination.eq(address)", "meta.destination.eq(ip)"),
         Bug("content", "read.addr.eq(Cat(at, ~place))", "read.addr.eq(Cat(at, place))"),
     )
@@ -376,15 +377,19 @@ class OutboxSpec(Spec):
         place = self.steady(m, 4, "place")
         octet, length, target, target_port, there = Signal(8), Signal(5), Signal(32), Signal(16), Signal()
         with m.If(number == start):
-            with m.If(dut.push & (written == place[2:])):
-                m.d.sync += octet.eq(dut.word.word_select(place[:2], 8))
+            with m.If(dut.push):
+                with m.If(written == 0):
+                    m.d.sync += target.eq(dut.word)
+                with m.If(written == 1):
+                    m.d.sync += target_port.eq(dut.word)
+                with m.If(written == place[2:] + 2):
+                    m.d.sync += octet.eq(dut.word.word_select(place[:2], 8))
             with m.If(dut.finish):
-                m.d.sync += [length.eq((written + dut.push) << 2), there.eq(1)]
-                m.d.sync += [target.eq(dut.ip), target_port.eq(dut.port)]
+                m.d.sync += [length.eq((written + dut.push - 2) << 2), there.eq(1)]
         m.d.comb += [
-            Assume(~dut.push | (~dut.busy & (written < 3)), "writes within"),
+            Assume(~dut.push | (~dut.busy & (written < 5)), "writes within"),
             Assume(~dut.push | (written != 0) | dut.room, "begins with room"),
-            Assume(~dut.finish | (~dut.busy & (dut.push | (written != 0))), "finishes what it began"),
+            Assume(~dut.finish | (~dut.busy & (written + dut.push > 2)), "finishes what it began"),
             Assume(~lookup.done | lookup.valid, "answers"),
             Assume(~(lookup.found & lookup.failed), "one answer"),
         ]
@@ -407,20 +412,23 @@ class OutboxSpec(Spec):
 
 
 class _Templates:
-    """Two templates: one of four words and a message, one of one word."""
+    """Two templates: a datagram of four words and a message, with something that is stored; and one word."""
 
-    _items = (
+    _first = (
         (Op.LITERAL, 0x11111111),
         (Op.LENGTH, 20 << 16 | 0x15),
+        _do(Op.WRITER, 1, "quiet", "store"),
         (Op.MESSAGE, 0),
-        (Op.REGISTER, 3),
-        (Op.PARTICIPANT, 2),
-        (Op.END, 0),
-        (Op.OWN, 0),
-        (Op.END, 0),
+        _do(Op.WRITER, 3),
+        _do(Op.PARTICIPANT, 2),
+        _do(Op.END, 0, "quiet", "end", "send"),
     )
-    words: ClassVar[list[int]] = [Const.cast(op).value << 32 | argument for op, argument in _items]
-    second = 6
+    _second = ((Op.OWN, 1 << DO["quiet"].offset), _do(Op.END, 0, "quiet", "end"))
+    second = 1  # in the place behind the first
+    words: ClassVar[list[int]] = [
+        op << 32 | argument
+        for op, argument in (*_first, *[(Op.END, 0)] * (ALIGNMENT - len(_first)), *_second)
+    ]
 
     def init(self) -> list[int]:
         return self.words
@@ -428,14 +436,19 @@ class _Templates:
 
 class ComposerSpec(Spec):
     """`count`: when it is done, as many words have come as the template has, and the message. `none_before`, after the
-    end: nothing comes of itself. `declared`: the length that is said is that of what follows. `over`: soon enough."""
+    end: nothing comes of itself. `declared`: the length that is said is that of what follows. `stored`: the word that says
+    so, before the message, and no other. `sent`: the first one, at its end. `over`: soon enough."""
 
     module = composer
     quick, deep = 17, 26
     bugs = (
-        Bug("count", "pushes.eq(in_message)", "pushes.eq(1)"),
-        Bug("none_before", "[there.eq(0), coming.eq(0)]", "there.eq(0)"),
-        Bug("declared", "added.eq(Cat(C(0, 2), words))", "added.eq(Cat(C(0, 1), words))"),
+        Bug("count", "pushed[0].eq(in_message)", "pushed[0].eq(1)"),
+        Bug("count", "there & ~(does & do.quiet)", "there"),
+        Bug("count", "does & do.quiet", "of_memory & do.quiet"),
+        Bug("none_before", "[running.eq(0), coming.eq(0), there.eq(0)]", "[running.eq(0), there.eq(0)]"),
+        Bug("declared", "words << 18", "words << 17"),
+        Bug("stored", "self.do.eq(todo[1])", "self.do.eq(todo[0])"),
+        Bug("sent", "self.send.eq(over[-1] & todo[1].send)", "self.send.eq(todo[0].send)"),
         Bug("over", "(word != words)", "(word != words + 1)"),
     )
 
@@ -444,23 +457,27 @@ class ComposerSpec(Spec):
 
     def properties(self, m: Module) -> None:
         dut = self.dut
-        running, count, cycles = Signal(), Signal(5), Signal(5)
+        loaded, running, stored, count, cycles = Signal(), Signal(), Signal(), Signal(5), Signal(5)
         words = dut.subject.words
         assume_steady(m, words)
         assume_steady(m, dut.at)
         second = dut.at == _Templates.second
         pushed = count + dut.push
+        with m.If(dut.load):
+            m.d.sync += loaded.eq(1)
         with m.If(dut.start):
-            m.d.sync += [running.eq(1), count.eq(0), cycles.eq(0)]
+            m.d.sync += [loaded.eq(0), running.eq(1), stored.eq(0), count.eq(0), cycles.eq(0)]
         with m.Elif(running):
             m.d.sync += [count.eq(pushed), cycles.eq(cycles + 1), running.eq(~dut.done)]
+            m.d.sync += stored.eq(stored | dut.do.store)
         needs = Mux(second, 1, 4 + words)
         hidden = Signal(2)
         m.d.sync += hidden.eq(Cat(dut.hide_own, dut.hide_peers))
         m.d.comb += [
             Assume((dut.at == 0) | second, "a template"),
             Assume(words <= 3, "a message that fits"),
-            Assume(~dut.start | ~running, "one after another"),
+            Assume(~dut.load | ~(running | dut.start), "one after another"),
+            Assume(~dut.start | loaded, "one after another"),
             Assume(~hidden[0] | (dut.own.data == 0), "hidden"),
             Assume(~hidden[1] | (dut.peers.data == 0), "hidden"),
             Assert(~(running & dut.done) | (pushed == needs), "count"),
@@ -470,6 +487,9 @@ class ComposerSpec(Spec):
                 | (dut.word[16:] == Const(20, 16) + (words << 2)),
                 "declared",
             ),
+            Assert(~dut.do.store | (running & ~second & ~stored & ~dut.push & (count == 2)), "stored"),
+            Assert(~(running & dut.done & ~second) | stored, "stored"),
+            Assert(dut.send == (dut.done & ~second), "sent"),
             Assert(cycles <= needs + 7, "over"),
             Cover(running & dut.done & ~second & (words == 2), "message"),
         ]

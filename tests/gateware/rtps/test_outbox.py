@@ -54,7 +54,7 @@ class Box:
             # As soon as it may be.
             while ctx.get(dut.busy) or not ctx.get(dut.room):
                 await ctx.tick()
-            pushed = words(octets)
+            pushed = [ip, port | random_.getrandbits(16) << 16, *words(octets)]
             for at, word in enumerate(pushed):
                 while random_.randrange(100) < self.bench.stalls:
                     await ctx.tick()
@@ -62,22 +62,16 @@ class Box:
                 ctx.set(dut.push, 1)
                 ctx.set(dut.word, word)
                 if last:
-                    self.end(ctx, ip, port)
+                    ctx.set(dut.finish, 1)
                 await ctx.tick()
                 ctx.set(dut.push, 0)
                 ctx.set(dut.word, random_.getrandbits(32))
-            if self.late or not pushed:
+            if self.late:
                 await ctx.tick().repeat(self.late)
-                self.end(ctx, ip, port)
+                ctx.set(dut.finish, 1)
                 await ctx.tick()
             ctx.set(dut.finish, 0)
             assert ctx.get(dut.busy)
-
-    def end(self, ctx: Any, ip: int, port: int) -> None:
-        dut = self.bench.dut
-        ctx.set(dut.finish, 1)
-        ctx.set(dut.ip, ip)
-        ctx.set(dut.port, port)
 
     async def resolve(self, ctx: Any) -> None:
         lookup = self.bench.dut.lookup

@@ -1,21 +1,29 @@
-"""Writes what a template says: words of its own, and what they refer to."""
+"""Runs through what a template says: words of its own, and what they refer to, are written, taken, or stored."""
 
 from __future__ import annotations
 
-from amaranth.hdl import C, Cat, Module, Mux, Signal
+from amaranth.hdl import C, Cat, Module, Mux, Shape, Signal, signed
 from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.rtps.ports import READ_LATENCY, ReadSignature
-from roslet.gateware.rtps.rom import REGISTER_BITS, WORD_BITS, Op, Rom
+from roslet.gateware.rtps.rom import ALIGNMENT, DO, WORD_BITS, Op, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 
+WINDOW = 3
+"""Messages that one ACKNACK asks for."""
 
-def subject_layout(peers: PeerMap, own: OwnMap) -> data.StructLayout:
-    """Whom and what it is about: the participant; the proxy, builtin or the user's; the number of our endpoint; where the
-    message begins in our own memory, its words behind its length, in bits that are zero here, how many they are, and how
-    many octets of the last are not its own; and of the numbers from the one that is wanted on, which are missing, the first
-    in the highest bit."""
+
+def age_shape(own: OwnMap, window: int) -> Shape:
+    """Of how far a number is behind its writer's last: 0, it is the last; -1, the next."""
+    told = len(own.writers), len(own.readers)
+    return signed(max(window, *told, *(writer.depth for writer in own.writers)).bit_length() + 1)
+
+
+def subject_layout(peers: PeerMap, own: OwnMap, window: int = WINDOW) -> data.StructLayout:
+    """Whom and what it is about: the participant; the proxy, builtin or the user's; the number of our endpoint; the message,
+    and the oldest for who is served, by their ages; where the message begins in our own memory, its words behind its length,
+    in bits that are zero here, how many they are, and how many octets of the last are not its own."""
     longest = max((local.words for local in own.writers), default=0)
     return data.StructLayout(
         {
@@ -24,40 +32,45 @@ def subject_layout(peers: PeerMap, own: OwnMap) -> data.StructLayout:
             "slot": peers.slot_bits,
             "endpoint": peers.endpoint_bits,
             "local": own.local_bits,
+            "age": age_shape(own, window),
+            "oldest": age_shape(own, window),
             "sample": own.address_bits,
             "words": max(1, longest.bit_length()),
             "padding": 2,
-            "missing": 32,
         }
     )
 
 
 class Composer(wiring.Component):
-    """Runs through the template that begins at `at`, from `start`, high for a cycle, on: one word a cycle, from 7 cycles
-    later.
+    """Runs through the template that `at` named, as the ROM counts, when `load` was high last, from `start`, high for a
+    cycle, then or later, on: one word a cycle.
 
-    Ports: `subject`, steady until `done`, which is high a cycle or two after the last word; `register`, in the same
-    cycle, the value of the sender's that `which` names;
-    `peers` and `own`, read ports, of which `hide_peers` and `hide_own` say a cycle later that zero shall be given for what
-    lies there; `push` with `word`, what is written. What takes the words must have room for all.
+    Ports: `subject`, steady until `done` but for what is taken for it; `borrow`, the lower word of the number that is asked
+    for is above that of the last; `peers` and `own`, read ports, of which `hide_peers` and `hide_own` say a cycle later that
+    zero shall be given for what lies there; `word`, which `push` says is to be written, and `do` what else: it is zero
+    otherwise. The first word comes 5 cycles after `start`. What takes the words must have room for all. In the cycle of
+    the last, or the one or two after it, `done` is high, with what comes then in `do.then`, and `send` if they are a
+    datagram. Up to `window` messages are asked for at once.
     """
 
-    def __init__(self, rom: Rom, peers: PeerMap, own: OwnMap) -> None:
-        self._rom, self._peers, self._own = rom, peers, own
+    def __init__(self, rom: Rom, peers: PeerMap, own: OwnMap, window: int = WINDOW) -> None:
+        self._rom, self._peers, self._own, self._window = rom, peers, own, window
         super().__init__(
             {
-                "at": In(range(len(rom.words))),
+                "at": In(range(-(-len(rom.words) // ALIGNMENT))),
+                "load": In(1),
                 "start": In(1),
-                "which": Out(REGISTER_BITS),
-                "register": In(32),
-                "subject": In(subject_layout(peers, own)),
+                "subject": In(subject_layout(peers, own, window)),
+                "borrow": In(1),
                 "peers": Out(ReadSignature(peers.address_bits)),
                 "own": Out(ReadSignature(own.address_bits)),
                 "hide_peers": Out(1),
                 "hide_own": Out(1),
                 "push": Out(1),
                 "word": Out(32),
+                "do": Out(DO),
                 "done": Out(1),
+                "send": Out(1),
             }
         )
 
@@ -68,88 +81,107 @@ class Composer(wiring.Component):
         )
         read = rom.read_port()
         subject = self.subject
-        starting = Signal()
-        here = Signal.like(self.at)  # what the ROM looks at
-        # Of the template: a word comes from the ROM, then it is in `item`, then what it refers to is read, and is pushed.
-        coming, there = Signal(), Signal()
+        here = Signal(range(len(self._rom.words)))  # what the ROM looks at
+        # Of the template: a word comes from the ROM, then it is in `item`, then what it refers to is read, and is added to.
+        running, coming, there = Signal(), Signal(), Signal()
+        first = self.at * ALIGNMENT
         item = Signal(WORD_BITS)
         argument, op = item[:32], item[32:]
+        of_memory, of_peers = op[3], op[2]
+        does = of_memory & (op != Op.OWN.value)  # what `do` says
+        do = data.View(DO, argument[: DO.size])
         words = subject.words
         word = Signal.like(words)  # of the message
-        in_message = Signal()
-        m.d.comb += in_message.eq(there & (op == Op.MESSAGE.value) & (word != words))
-
-        # One of these, the others are zero: so they need not be chosen from
-        literal, register = [Signal(32), Signal(32)], [Signal(32), Signal(32)]
-        ready, over = Signal(READ_LATENCY), Signal(READ_LATENCY)
-        read_own, read_peers, was_there = Signal(), Signal(), Signal()
-        proxy = Mux(
-            subject.builtin,
-            self._peers.builtin(subject.slot, subject.kind, argument[:3]),
-            self._peers.endpoint(subject.endpoint, argument[:3]),
-        )
-        pushes, ends = Signal(), Signal()
-        added = Signal(16)
+        in_message, last = Signal(), Signal()
         m.d.comb += [
-            read.addr.eq(here),
+            in_message.eq(there & (op == Op.MESSAGE.value) & (word != words)),
+            last.eq(there & does & do.end),
+            read.addr.eq(Mux(self.load, first, here)),
             read.en.eq(~in_message),
-            self.which.eq(argument[:REGISTER_BITS]),
-            self.hide_own.eq(was_there & ~read_own),
-            self.hide_peers.eq(was_there & ~read_peers),
-        ]
-        m.d.sync += [
-            self.push.eq(ready[-1]),
-            self.word.eq(self.own.data | self.peers.data | literal[1] | register[1]),
-            self.done.eq(over[-1]),
-            ready.eq(Cat(pushes, ready[:-1])),
-            over.eq(Cat(ends, over[:-1])),
-            literal[0].eq(0),
-            literal[1].eq(literal[0]),
-            register[0].eq(0),
-            register[1].eq(register[0]),
-            was_there.eq(there),
-            read_own.eq(0),
-            read_peers.eq(0),
         ]
         with m.If(~in_message):
-            m.d.sync += [here.eq(here + 1), item.eq(read.data), there.eq(coming)]
+            m.d.sync += [item.eq(read.data), coming.eq(running | self.start), there.eq(coming)]
+            with m.If(running | self.start):
+                m.d.sync += here.eq(here + 1)
+        with m.If(self.load):
+            m.d.sync += here.eq(first | self.start)
         with m.If(self.start):
-            m.d.sync += [here.eq(self.at), word.eq(0), coming.eq(0), there.eq(0)]
-            m.d.sync += starting.eq(1)
-        with m.If(starting):
-            m.d.sync += [starting.eq(0), coming.eq(1)]
-        with m.If(there):
-            m.d.comb += pushes.eq(1)
-            with m.Switch(op):
-                with m.Case(Op.OWN.value):
-                    m.d.comb += self.own.addr.eq(argument)
-                    m.d.sync += read_own.eq(1)
-                with m.Case(Op.PARTICIPANT.value):
-                    m.d.comb += self.peers.addr.eq(self._peers.participant(subject.slot, argument[:4]))
-                    m.d.sync += read_peers.eq(1)
-                with m.Case(Op.PROXY.value):
-                    m.d.comb += self.peers.addr.eq(proxy)
-                    m.d.sync += read_peers.eq(1)
-                with m.Case(Op.REGISTER.value):
-                    m.d.sync += register[0].eq(self.register)
-                with m.Case(Op.BITMAP.value):
-                    m.d.sync += register[0].eq(subject.missing)
-                with m.Case(Op.WRITER.value):
-                    number = Mux(subject.builtin, subject.kind[0], subject.local)
-                    m.d.comb += self.own.addr.eq(self._own.writer(number, argument[:2], subject.builtin))
-                    m.d.sync += read_own.eq(1)
-                with m.Case(Op.LITERAL.value, Op.ENTITY.value, Op.LENGTH.value, Op.PADDING.value):
-                    m.d.sync += literal[0].eq(Cat(argument[:16], argument[16:32] + added))
-                    with m.If(op == Op.ENTITY.value):
-                        m.d.comb += added.eq(subject.local + 1)
-                    with m.If(op == Op.LENGTH.value):
-                        m.d.comb += added.eq(Cat(C(0, 2), words))
-                    with m.If(op == Op.PADDING.value):
-                        m.d.comb += added.eq(Cat(C(0, 8), subject.padding))
-                with m.Case(Op.MESSAGE.value):
-                    m.d.comb += [self.own.addr.eq(subject.sample | (word + 1)), pushes.eq(in_message)]
-                    m.d.sync += [read_own.eq(1), word.eq(word + 1)]
-                with m.Case(Op.END.value):
-                    m.d.comb += [pushes.eq(0), ends.eq(1)]
-                    m.d.sync += [there.eq(0), coming.eq(0)]
+            m.d.sync += [running.eq(1), word.eq(0)]
+        with m.If(last):
+            m.d.sync += [running.eq(0), coming.eq(0), there.eq(0)]
+
+        # -- where it is
+        with m.If(of_peers):
+            with m.If(op[0]):
+                m.d.comb += self.peers.addr.eq(
+                    Mux(
+                        subject.builtin,
+                        self._peers.builtin(subject.slot, subject.kind, do.word),
+                        self._peers.endpoint(subject.endpoint, do.word),
+                    )
+                )
+            with m.Else():
+                m.d.comb += self.peers.addr.eq(self._peers.participant(subject.slot, do.word))
+        with m.Switch(op[:2]):
+            with m.Case(Op.OWN.value & 3):
+                m.d.comb += self.own.addr.eq(argument)
+            with m.Case(Op.WRITER.value & 3):
+                number = Mux(subject.builtin, subject.kind[0], subject.local)
+                m.d.comb += self.own.addr.eq(self._own.writer(number, do.word, subject.builtin))
+            with m.Case(Op.SIZE.value & 3):
+                m.d.comb += self.own.addr.eq(subject.sample)
+            with m.Case(Op.MESSAGE.value & 3):
+                m.d.comb += self.own.addr.eq(subject.sample | (word + 1))
+        with m.If(in_message):
+            m.d.sync += word.eq(word + 1)
+
+        # -- what is read, or a literal: one of these, the others are zero, so they need not be chosen from
+        literal, kind = [Signal(32), Signal(32)], Signal(3)
+        todo = [Signal(DO), Signal(DO)]
+        pushed, over = Signal(READ_LATENCY), Signal(READ_LATENCY)
+        read_own, read_peers = Signal(), Signal()
+        m.d.comb += [self.hide_own.eq(~read_own), self.hide_peers.eq(~read_peers)]
+        m.d.sync += [
+            read_own.eq(there & of_memory & ~of_peers),
+            read_peers.eq(there & of_memory & of_peers),
+            pushed.eq(Cat(there & ~(does & do.quiet), pushed)),
+            over.eq(Cat(last, over)),
+            literal[0].eq(argument),
+            kind.eq(op),
+            todo[0].eq(do),
+            literal[1].eq(literal[0]),
+            todo[1].eq(todo[0]),
+        ]
+        with m.If(~there | of_memory):
+            m.d.sync += [literal[0].eq(0), kind.eq(Op.LITERAL.value)]
+        with m.If(~(there & does)):
+            m.d.sync += todo[0].eq(0)
+        with m.If(there & (op == Op.MESSAGE.value)):
+            m.d.sync += pushed[0].eq(in_message)
+
+        # -- what is added to it: one of these, the others are zero
+        carried, given = Signal(signed(2)), todo[0]
+        missing = Cat(subject.age >= n for n in reversed(range(self._window)))
+        added, total = Signal(signed(34)), Signal(signed(35))
+        m.d.sync += added.eq(
+            Mux(given.minus_age, -subject.age, 0)
+            | Mux(given.minus_oldest, -subject.oldest, 0)
+            | given.one
+            | Mux(given.carry, carried, 0)
+            | Mux(given.borrow & self.borrow, C(-1, signed(2)), 0)
+            | Mux(kind == Op.ENTITY.value, (subject.local + 1) << 16, 0)
+            | Mux(kind == Op.LENGTH.value, words << 18, 0)
+            | Mux(kind == Op.PADDING.value, subject.padding << 24, 0)
+            | Mux(kind == Op.BITMAP.value, missing << 32 - self._window, 0)
+        )
+        m.d.comb += total.eq((self.own.data | self.peers.data | literal[1]) + added)
+        m.d.sync += [
+            self.word.eq(total),
+            self.push.eq(pushed[-1]),
+            self.do.eq(todo[1]),
+            self.done.eq(over[-1]),
+            self.send.eq(over[-1] & todo[1].send),
+        ]
+        with m.If(todo[1].minus_age | todo[1].minus_oldest | todo[1].one):
+            m.d.sync += carried.eq(total[32:])
         return m

@@ -42,8 +42,10 @@ class Loader(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
+        # Of a long one Yosys makes logic, unless told
+        attrs = {"ram_style": "block"} if len(self._program) > 16 else {}
         m.submodules.program = program = memory.Memory(
-            shape=self._entry, depth=len(self._program), init=self._program
+            shape=self._entry, depth=len(self._program), init=self._program, attrs=attrs
         )
         read = program.read_port()
         at = Signal(range(len(self._program)))

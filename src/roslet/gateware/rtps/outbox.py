@@ -13,10 +13,10 @@ from roslet.gateware.stream import FrameSignature
 class Outbox(wiring.Component):
     """Two places of `depth` words together: a datagram is written in one while the one before is sent from the other.
 
-    Ports: with `push` the word `word` is the next of a datagram, to which `ip` and `port` belong when `finish` is high for a
-    cycle, with or after its last word. It has one word or more. Then `busy` is high for two cycles and until the one before
-    has been sent, and no word may come; `room` is high while a datagram of `longest` octets can be written. `source_port`,
-    ours. `lookup` asks for hardware addresses; `o`, the data.
+    Ports: with `push` the word `word` is the next of: the address that a datagram goes to, the port, in the lower half of a
+    word, and the datagram, of one word or more. `finish` is high for a cycle with the last word or after it. Then `busy` is
+    high for two cycles and until the one before has been sent, and no word may come; `room` is high while a datagram of
+    `longest` octets can be written. `source_port`, ours. `lookup` asks for hardware addresses; `o`, the data.
 
     A datagram begins to leave 6 cycles after `finish` if its hardware address is known and none is before it, then an octet
     a cycle. Who does not answer to ARP within two to the `patience` cycles gets nothing (`drop_unresolved`): who comes
@@ -35,8 +35,6 @@ class Outbox(wiring.Component):
                 "word": In(32),
                 "finish": In(1),
                 "busy": Out(1),
-                "ip": In(32),
-                "port": In(16),
                 "room": Out(1),
                 "source_port": In(16),
                 "lookup": Out(LookupSignature()),
@@ -59,19 +57,22 @@ class Outbox(wiring.Component):
         m.d.comb += [
             write.addr.eq(Cat(length, place)),
             write.data.eq(self.word),
-            write.en.eq(self.push),
+            write.en.eq(self.push),  # the address and the port too, where the first words will lie
             added.eq((Cat(C(1, 1), total) + Cat(carry, pair[:16]))[1:]),
             self.room.eq(~self.busy),
         ]
         # Two halves in one cycle, to the sum in the next; what is carried, a cycle later.
         m.d.sync += [pair.eq(pair[16]), total.eq(added[:16]), carry.eq(added[16])]
-        with m.If(self.push):
+        ip, port, settling = Signal(32), Signal(32), Signal(2)
+        heading = Signal(2, init=3)  # the address, or the port, is yet to come
+        with m.If(self.push & (heading != 0)):
+            m.d.sync += [heading.eq(heading[1:]), ip.eq(port), port.eq(self.word)]
+        with m.Elif(self.push):
             m.d.sync += length.eq(length + 1)
             m.d.sync += pair.eq((Cat(C(1, 1), self.word[:16]) + Cat(pair[16], self.word[16:]))[1:])
-        ip, port, settling = Signal(32), Signal(16), Signal(2)
         m.d.sync += settling.eq(Cat(self.finish, settling[0]))
         with m.If(self.finish):
-            m.d.sync += [ip.eq(self.ip), port.eq(self.port), self.busy.eq(1)]
+            m.d.sync += [heading.eq(3), self.busy.eq(1)]
         with m.If(settling[1]):
             m.d.sync += waiting.eq(1)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from amaranth.hdl import Module, Mux, Signal, Value
+from amaranth.hdl import Module, Signal, Value
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
@@ -73,7 +73,7 @@ class Participant(wiring.Component):
         self.own_map = self._own = own = OwnMap([*writers, *(local for local, _ in kept)], readers)
         self._domain = domain
         group_port, meta_port, user_port = ports
-        self._init = own.init(prefix, address, meta_port, user_port)
+        self._init = own.init(prefix, address, meta_port, user_port, group_port)
         for n, (local, octets) in enumerate(kept, len(writers)):
             words = [int.from_bytes(octets[at : at + 4], "little") for at in range(0, len(octets), 4)]
             at = own.samples[n] + own.stride(local) * (1 % local.depth)
@@ -88,13 +88,15 @@ class Participant(wiring.Component):
         while depth < 2 * (most // 4 + 1):
             depth *= 2
         self._users, self._readers = len(writers), len(readers)
+        window = max(1, longest // DISCOVERY_SIZE)
+        self._composer = Composer(self._rom, peers, own, window)
         self._blocks: dict[str, Any] = {
             "queue": DatagramQueue(longest),
             "walker": Walker(peers, own),
             "submessages": Submessages(peers, own),
             "discovery": Discovery(peers, own, domain is not None),
             "turns": Turns(peers),
-            "sender": Sender(self._rom, peers, own, len(writers), max(1, longest // DISCOVERY_SIZE)),
+            "sender": Sender(self._rom, peers, own, len(writers), window),
             "outbox": Outbox(most, depth),
         }
         self.drops = [
@@ -142,7 +144,7 @@ class Participant(wiring.Component):
         discovery, turns, sender, outbox = (
             blocks[name] for name in ("discovery", "turns", "sender", "outbox")
         )
-        m.submodules.composer = composer = Composer(self._rom, self._peers, self._own)
+        m.submodules.composer = composer = self._composer
 
         connect(m, flipped(self.udp_rx), queue.i)
         connect(m, queue.o, walker.i)
@@ -188,20 +190,18 @@ class Participant(wiring.Component):
             turns.taken.eq(sender.taken),
             sender.job.eq(turns.job),
             sender.valid.eq(turns.valid),
-            sender.group_port.eq(self.group_port),
             composer.at.eq(sender.template),
-            composer.start.eq(sender.start),
-            sender.which.eq(composer.which),
-            composer.register.eq(sender.register),
+            composer.load.eq(sender.load),
+            composer.start.eq(sender.go),
+            composer.borrow.eq(sender.borrow),
             composer.subject.eq(sender.subject),
+            sender.word.eq(composer.word),
+            sender.do.eq(composer.do),
             sender.done.eq(composer.done),
             sender.room.eq(outbox.room),
-            sender.busy.eq(outbox.busy),
             outbox.push.eq(composer.push),
             outbox.word.eq(composer.word),
-            outbox.finish.eq(sender.finish),
-            outbox.ip.eq(sender.ip),
-            outbox.port.eq(sender.port),
+            outbox.finish.eq(composer.send),
             outbox.source_port.eq(self.source_port),
             sender.writers.eq(self.writers_enabled),
             sender.readers.eq(self.readers_enabled),
@@ -231,11 +231,12 @@ class Participant(wiring.Component):
                 m.d.comb += [user.data.eq(word) for user in users]
                 given[side, name] = read.addr, word
         write, ours = peers.write_port(), own.write_port()
-        # In the cycle after, as what is written takes long; what comes from outside does while this is held in reset
+        # In the cycle after, as what is written takes long; what comes from outside does while this is held in reset, and
+        # the sender's is zero
         receiving, outside = (walker.source, submessages.write, discovery.write), self.own
         for name in ("en", "addr", "data"):
             received = _either(getattr(one, name) for one in receiving)
-            sent = Mux(outside.en, getattr(outside, name), getattr(sender.write, name))
+            sent = getattr(outside, name) | getattr(sender.write, name)
             for port, value in ((write, received), (ours, sent)):
                 later = Signal.like(getattr(port, name), reset_less=True)
                 m.d.comb += getattr(port, name).eq(later)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Cat, Module, Mux, Signal, Value
-from amaranth.lib import wiring
+from amaranth.hdl import C, Cat, Module, Mux, Signal, Value, signed
+from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out
+
+from roslet.gateware.octets import pick
 
 QUICK = 5
 """Announcements at once at start, QUICK_PERIOD seconds apart."""
@@ -21,7 +23,8 @@ class Periods(wiring.Component):
     although some are lost. The first `publish` comes a period after `publishing` has risen, and none while it is low.
 
     Of what is due at the same time one comes after the other, `interval` steps apart. What is due again before it came comes
-    once. A period of 0 is one of 1. Periods have `bits`.
+    once. A period of 0 is one of 1, and so is a `prescaler_div` of 0. Periods have `bits`. One adder counts all of them, by
+    turns: a pulse comes up to 100 cycles after its step, and periods that have fewer cycles end as often as that is done.
     """
 
     def __init__(self, second: int, quick: int, sweeps: int = 2, bits: int = BITS) -> None:
@@ -43,52 +46,76 @@ class Periods(wiring.Component):
         m = Module()
         cycles = Signal(range(self._second))
         m.d.comb += self.tick.eq(self.enable & (cycles == self._second - 1))
-        divided = Signal(PRESCALER_BITS)
-        step = Signal()
-        m.d.sync += step.eq(self.enable & (divided == 0))
+        divided, step = Signal(PRESCALER_BITS), Signal()
+        m.d.comb += step.eq(self.enable & (divided[1:] == 0))
         with m.If(self.enable):
             m.d.sync += [
                 cycles.eq(Mux(self.tick, 0, cycles + 1)),
-                divided.eq(Mux(divided == 0, self.prescaler_div - (self.prescaler_div != 0), divided - 1)),
+                divided.eq(Mux(step, self.prescaler_div, divided - 1)),
             ]
+
+        # Of each period, and of the interval, how many steps are left, as a negative number: it is over when it is not one.
+        outputs = {
+            "announcement": self.announce,
+            **dict.fromkeys(self._sweeps, self.sweep),
+            "message": self.publish,
+        }
+        names = [*outputs, "interval"]
+        shape = signed(self._bits + 1)
+        m.submodules.left = left = memory.Memory(
+            shape=shape, depth=len(names), init=[], attrs={"ram_style": "block"}
+        )
+        read, write = left.read_port(), left.write_port()
+        at = Signal(range(len(names)))  # which of them
+        ends, again = Signal(), Signal()  # it begins again: next, now
+        running, fresh = Signal(), Signal(init=1)  # in this round; nothing is in the memory yet
+        steps, passed = Signal(8), Signal(8)  # in this round, and in the one before
         quick = Signal(range(QUICK + 1), init=QUICK)
-
-        def due(name: str, period: Value, running: Value, first: int | None = None) -> Signal:
-            """High in the cycle after the last step of a period; the first one is as long, or has `first` steps."""
-            left = Signal(self._bits, init=first or 0, name=f"{name}_left")
-            last = Signal(name=f"{name}_last")  # step of the period: looked at a cycle before it counts
-            over = Signal(name=f"{name}_over")
-            m.d.sync += [last.eq(left[1:] == 0), over.eq(step & last & running)]
-            with m.If(~running & (first is None)):
-                m.d.sync += left.eq(period)
-            with m.Elif(step & running):
-                m.d.sync += left.eq(Mux(last, period, left - 1))
-            return over
-
-        announced = due("announcement", Mux(quick != 0, self._quick, self.announcement), self.enable, 1)
-        with m.If(announced & (quick != 0)):
-            m.d.sync += quick.eq(quick - 1)
-        swept = Cat(due(name, getattr(self, name), self.enable) for name in self._sweeps).any()
-        published = due("message", self.message, self.publishing & self.enable)
-
-        gap = Signal(self._bits)
-        free = Signal()
-        m.d.sync += free.eq(gap == 0)
-        with m.If(step & (gap != 0)):
-            m.d.sync += gap.eq(gap - 1)
-        given: Value = ~free  # to one before
-        for output, over in (
-            (self.announce, announced),
-            (self.sweep, swept),
-            (self.publish, published),
-        ):
-            waiting = Signal(name=f"{output.name}_waiting")
-            with m.If(over):
-                m.d.sync += waiting.eq(1)
-            with m.If(waiting & ~given & ~over):
-                m.d.comb += output.eq(1)
-                m.d.sync += [waiting.eq(0), gap.eq(self.interval), free.eq(0)]
-            given = given | waiting
+        is_message = at == names.index("message")
+        stopped = fresh | (is_message & ~self.publishing)
+        waiting = {name: Signal(name=f"{name}_waiting") for name in ("announce", "sweep", "publish")}
+        periods = [getattr(self, name) for name in names]
+        periods[0] = Mux(quick != 0, self._quick, periods[0])
+        less, after = Signal(shape), Signal(shape)  # a period's complement; what is left then
+        m.d.comb += [read.addr.eq(at), write.addr.eq(at), write.data.eq(after)]
+        m.d.sync += steps.eq(steps + step)
+        m.d.sync += less.eq(~Cat(pick(periods, at), C(0, 1)))
+        with m.If(~again):
+            m.d.sync += less.eq(0)
+        with m.FSM() as fsm:
+            with m.State("READ"):
+                m.next = "COUNT"
+            with m.State("COUNT"):
+                m.d.sync += after.eq((Cat(C(1, 1), read.data) + Cat(again, less | Mux(again, 0, passed)))[1:])
+                m.next = "STORE"
+            with m.State("STORE"):
+                m.d.comb += write.en.eq(1)
+                with m.If(~again & ~after[-1]), m.Switch(at):
+                    for n, output in enumerate(outputs.values()):
+                        with m.Case(n), m.If(stopped | (passed != 0)):
+                            m.d.comb += ends.eq(1)
+                            with m.If(running & ~(is_message & stopped)):
+                                m.d.sync += waiting[output.name].eq(1)
+                    with m.Default():
+                        given: Value = ~running  # to one before
+                        for output in (self.announce, self.sweep, self.publish):
+                            waits = waiting[output.name]
+                            with m.If(waits & ~given):
+                                m.d.comb += [output.eq(1), ends.eq(1)]
+                                m.d.sync += waits.eq(0)
+                            given = given | waits
+                with m.If(again & running & (at == 0) & (quick != 0)):
+                    m.d.sync += quick.eq(quick - 1)
+                m.d.sync += again.eq(ends)
+                m.next = "READ"
+                with m.If(~ends):
+                    m.d.sync += at.eq(at + 1)
+                    with m.If(at == len(names) - 1):
+                        m.d.sync += [at.eq(0), running.eq(self.enable), fresh.eq(fresh & ~running)]
+                        m.d.sync += [passed.eq(steps), steps.eq(step)]
+        # What is late is not more than due.
+        with m.If(fsm.ongoing("COUNT") & ~again & (stopped | ~read.data[-1])):
+            m.d.sync += after.eq(0)
         return m
 
 

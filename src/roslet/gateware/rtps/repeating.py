@@ -2,115 +2,55 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import C, Module, Mux, Signal, Value
+from amaranth.hdl import C, Module, Mux, Value
 
-from roslet.gateware.rtps import tables
-from roslet.gateware.rtps.rom import Register
-from roslet.gateware.rtps.sending import COMPOSE, Sending
+from roslet.gateware.rtps.sending import Sending
 
 
-def repeat(m: Module, work: Sending, asked: Value, writers: Value, readers: Value) -> None:
-    """The states from READER on, in which what was asked for has come, the address first: what we have, and what it has
-    and asks for. `asked`: it has said so now; `writers`, `readers`, those of ours that are enabled.
-
-    From HEARTBEAT on with `work.publishing`: the message of the user's goes with the heartbeat, and NEXT READER follows.
+def repeat(m: Module, work: Sending, asked: Value, writers: Value, readers: Value, published: str) -> None:
+    """The states from READER on, in which it is known what we have, and what it has and asks for. `asked`: it has said so
+    now; `writers`, `readers`, those of ours that are enabled. State `published` comes after a message that is new.
     """
-    ports, subject, own = work.ports, work.subject, work.own
-    ask_to, start = Signal(work.age_shape), Signal(work.age_shape)
-    unacknowledged, lost = Signal(), Signal()
-    over = Signal()  # nothing more is asked for
+    subject, start_of = work.subject, work.rom.start
+    age, oldest = subject.age, subject.oldest
     with m.State("READER"):
-        m.d.comb += work.take_ip.eq(1)
-        work.ask_own(m, tables.WRITER_LAST)
-        m.next = "READER PORT"
-    with m.State("READER PORT"):
-        m.d.comb += work.take_port.eq(1)
-        work.ask_own(m, tables.WRITER_LAST_HI)
-        work.ask(m, tables.START)
-        m.next = "LAST"
-    with m.State("LAST"):
-        m.d.comb += work.increment.eq(0)
-        m.d.sync += work.last.eq(work.sum)
-        work.ask_own(m, tables.WRITER_OLDEST)
-        work.ask(m, tables.ACKED)
-        m.next = "START"
-    with m.State("START"):
-        m.d.comb += work.increment.eq(0)
-        m.d.sync += work.last_high.eq(work.sum)
-        work.ask(m, tables.ASK_FROM)
-        m.next = "ACKED"
-    with m.State("ACKED"):
-        m.d.sync += [start.eq(work.age_of_given()), work.oldest.eq(ports.own.data)]
-        work.ask(m, tables.ASK_TO)
-        m.next = "ASK FROM"
-    with m.State("ASK FROM"):
-        m.d.sync += unacknowledged.eq(~work.behind[31])
-        with m.If(start < work.oldest):
-            m.d.sync += work.oldest.eq(start)
-        m.next = "ASK TO"
-    with m.State("ASK TO"):
-        m.d.sync += [work.age.eq(work.age_of_given()), work.borrowed.eq(work.behind[32])]
-        m.next = "ASKED"
-    with m.State("ASKED"):
-        age = work.age_of_given()
-        m.d.sync += ask_to.eq(Mux(age[-1], 0, age))
+        with m.If(work.start < oldest):
+            m.d.sync += oldest.eq(work.start)
         m.next = "JUDGE"
     with m.State("JUDGE"):
-        m.d.sync += lost.eq((work.age > work.oldest) & (work.age >= ask_to))
         m.next = "IDLE"
         with m.If(asked):
-            m.next = "LOST"
-        with m.Elif(unacknowledged):
+            m.next = "REPEAT"
+            with m.If((age > oldest) & (age >= work.ask_to) & ~subject.builtin):
+                work.compose(m, start_of["gap"])
+        with m.Elif(work.unacknowledged):
             m.next = "HEARTBEAT"
-    with m.State("LOST"):
-        m.next = "REPEAT"
-        with m.If(lost & ~subject.builtin):
-            work.compose(m, work.rom.start["gap"], "REPEAT", COMPOSE)
     with m.State("REPEAT"):
-        with m.If(work.age > work.oldest):
-            m.d.sync += work.age.eq(work.oldest)
-        m.d.sync += work.chosen.eq(Register.NUMBER)
-        m.next = "AGED"
-    with m.State("AGED"):
-        m.d.sync += [over.eq(work.age < ask_to), subject.sample.eq(work.sample(work.number[:16]))]
-        with m.If(subject.builtin):
-            m.d.sync += subject.local.eq(work.oldest - work.age)
+        with m.If(age > oldest):
+            m.d.sync += age.eq(oldest)
         m.next = "AGAIN"
     with m.State("AGAIN"):
-        m.d.comb += work.of_sample.eq(1)
-        m.next = "KEPT SAMPLE"
-        with m.If(subject.builtin):
-            m.next = "DISCOVERY"
-        with m.If(over):
+        with m.If(age < work.ask_to):  # nothing more is asked for
             m.next = "HEARTBEAT"
+        with m.Elif(subject.builtin):
+            m.d.sync += subject.local.eq(oldest - age)
+            m.next = "DISCOVERY"
+        with m.Else():
+            work.compose(m, start_of["message"])
     with m.State("DISCOVERY"):
         told = []
         for bits, name, table in (
-            (writers, "publication", own.writers),
-            (readers, "subscription", own.readers),
+            (writers, "publication", work.own.writers),
+            (readers, "subscription", work.own.readers),
         ):
-            start_of = work.rom.start
             there = bits.bit_select(subject.local[: len(bits).bit_length()], 1)
             one = work.choose([C(start_of[f"{name}{n}"]) for n in range(len(table))] or [C(0)])
             told.append(Mux(there, one, start_of[f"{name}_gone"]))
-        work.compose(m, Mux(subject.kind[0], told[1], told[0]), "NEXT")
-    with m.State("KEPT SAMPLE"):
-        m.next = "SAMPLE"
-    with m.State("SAMPLE"):
-        m.d.sync += [subject.words.eq(ports.own.data), subject.padding.eq(ports.own.data[16:18])]
-        work.compose(m, work.rom.start["message"], "NEXT")
+        work.compose(m, Mux(subject.kind[0], told[1], told[0]))
     with m.State("NEXT"):
-        m.d.sync += [work.age.eq(work.age - 1), work.chosen.eq(Register.NUMBER)]
-        m.next = "AGED"
+        m.next = published
+        with m.If(~work.publishing):
+            m.d.sync += age.eq(age - 1)
+            m.next = "AGAIN"
     with m.State("HEARTBEAT"):
-        work.ask_own(m, tables.WRITER_COUNT)
-        m.next = "HEARTBEATS"
-    with m.State("HEARTBEATS"):
-        m.next = "COUNT"
-    with m.State("COUNT"):
-        work.store(m, tables.WRITER_COUNT)
-        work.compose(m, work.by_kind("heartbeat"), "IDLE", COMPOSE)
-        with m.If(work.publishing):
-            start_of = work.rom.start
-            template = Mux(work.to_group, start_of["group_message_heartbeat"], start_of["message_heartbeat"])
-            work.compose(m, template, "NEXT READER")
+        work.compose(m, work.by_kind("heartbeat"))

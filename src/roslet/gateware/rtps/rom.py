@@ -8,7 +8,10 @@ from __future__ import annotations
 import enum
 from collections.abc import Mapping, Sequence
 
+from amaranth.lib.data import StructLayout
+
 from roslet.gateware.rtps import tables
+from roslet.gateware.rtps.parameters import GROUP
 from roslet.gateware.rtps.tables import Local, OwnMap
 from roslet.wire.fields import Field
 from roslet.wire.rtps import (
@@ -43,33 +46,55 @@ CDR_LE = 0x0100
 
 
 class Op(enum.IntEnum):
-    """What a word of a template is, and its argument, the other 32 bits."""
+    """What a word of a template is, and its argument, the other 32 bits.
+
+    From OWN on it is a word of a memory, and from WRITER on the argument is `DO`: which word, and what to do with it. The
+    two bits below the highest say which memory.
+    """
 
     LITERAL = 0  # the argument
-    OWN = 1  # the word at that address of our own memory
-    PARTICIPANT = 2  # that word of the participant it goes to
-    PROXY = 3  # that word of the proxy it goes to
-    REGISTER = 4  # one of `Register`
-    WRITER = 5  # that word of our writer
-    ENTITY = 6  # the argument with the number of our endpoint in its third octet
-    LENGTH = 7  # the argument with the octets of the message added in its upper half
-    PADDING = 8  # the argument with the message's padding in its fourth octet
-    BITMAP = 9  # the argument with what is missing in its highest bits
-    MESSAGE = 10  # the words of the user's message
-    END = 15
+    ENTITY = 1  # the argument with the number of our endpoint in its third octet
+    LENGTH = 2  # the argument with the octets of the message added in its upper half
+    PADDING = 3  # the argument with the message's padding in its fourth octet
+    BITMAP = 4  # the argument with what is missing in its highest bits
+    OWN = 8  # the word at that address of our own memory
+    WRITER = 9  # of our writer
+    SIZE = 10  # how many words the message has, and its padding
+    MESSAGE = 11  # the words of the user's message
+    PARTICIPANT = 12  # of the participant it goes to
+    PROXY = 13  # of the proxy it goes to
+    END = 15  # nothing
 
 
-REGISTER_BITS = 2
-
-
-class Register(enum.IntEnum):
-    """Values of the sender's: numbers of messages, of each the lower word and the higher one."""
-
-    FIRST = 0
-    FIRST_HIGH = 1
-    NUMBER = 2
-    NUMBER_HIGH = 3
-
+DO = StructLayout(
+    {
+        "word": 4,
+        "quiet": 1,  # it is not written
+        # What is added to it first: to the lower word of a number something small, and then to the higher one what is
+        # carried; there must be a word between them.
+        "minus_age": 1,
+        "minus_oldest": 1,
+        "one": 1,
+        "carry": 1,
+        "borrow": 1,  # what is borrowed from the higher word of the number that is asked for
+        # Who takes it
+        "store": 1,  # our writer, as the same word of its
+        "last": 1,
+        "oldest": 1,
+        "info": 1,
+        "port": 1,
+        "start": 1,
+        "acked": 1,
+        "ask_from": 1,
+        "ask_to": 1,
+        "place": 1,  # it is the number of the message: where that is kept
+        "size": 1,
+        # It is the last: what comes is that of AFTERWARDS, and what was written is a datagram.
+        "end": 1,
+        "then": 4,
+        "send": 1,
+    }
+)
 
 Item = tuple[Op, int]
 Value = int | bytes | Item | list[Item]
@@ -110,15 +135,48 @@ def _submessage(kind: int, flags: int, body: Sequence[Item], length: Item | None
     return [length or (Op.LITERAL, first | 4 * len(body) << 16), *body]
 
 
+def _do(op: Op, word: int = 0, *flags: str) -> Item:
+    return op, word | sum(1 << DO[flag].offset for flag in flags)
+
+
+def _is_written(item: Item) -> bool:
+    op, argument = item
+    return not (op > Op.OWN and argument >> DO["quiet"].offset & 1)
+
+
+def _quiet(item: Item, *flags: str) -> Item:
+    """The same, not written; and what else is to be done."""
+    op, argument = item
+    return op, argument | _do(op, 0, "quiet", *flags)[1]
+
+
+COUNT = _do(Op.WRITER, tables.WRITER_COUNT, "quiet", "one", "store")
+NUMBER = _do(Op.WRITER, tables.WRITER_LAST, "minus_age")
+FIRST = _do(Op.WRITER, tables.WRITER_LAST, "minus_oldest")
+HIGH = _do(Op.WRITER, tables.WRITER_LAST_HI, "carry")
+"""One more is sent that is counted. The lower words of the number of the message that is spoken of, and of the oldest for
+who is served; and the higher one of that whose lower was looked at before."""
+
 PLACEHOLDERS = [0xA5A50000 + n for n in range(6)]
 """Of our GUID prefix, our address, and our two ports: numbers that nothing else is."""
 _PREFIX = b"".join(word.to_bytes(4, "little") for word in PLACEHOLDERS[:3])
 _IP = PLACEHOLDERS[3].to_bytes(4, "little")
 
 
+AFTERWARDS = ("IDLE", "TOLD", "WHO", "WRITER", "READER", "REPEAT", "NEXT", "KEEP", "EACH READER", "TO READER")
+"""The states of the sender in which it goes on after a template; of those from PUBLISHING on, one that publishes."""
+PUBLISHING = AFTERWARDS.index("KEEP")
+ALIGNMENT = 16
+"""Templates begin at multiples of it, so that who says where has less to choose from."""
+
+
 class Rom:
-    """The templates of a node with these topics; `start[name]` is where one begins in `words`, `size[name]` its words
-    without the message. `lease` in seconds."""
+    """The templates of a node with these topics; one begins in `words` at ALIGNMENT * `start[name]`, and its datagram has
+    `size[name]` words, without the message. `lease` in seconds.
+
+    What is written first is where it goes to, the address and then the port; then comes the datagram. Those that write
+    nothing are for what they do.
+    """
 
     def __init__(self, own: OwnMap, domain: int | None, lease: float, enclave: str = "/") -> None:
         self.own = own
@@ -131,18 +189,33 @@ class Rom:
             PLACEHOLDERS[4]: (Op.OWN, own.own(tables.META_PORT_OWN)),
             PLACEHOLDERS[5]: (Op.OWN, own.own(tables.USER_PORT_OWN)),
         }
+        self._to_participant = [_do(Op.PARTICIPANT, tables.META_IP), _do(Op.PARTICIPANT, tables.META_PORT)]
         self._header = _words(header.own(_PREFIX), self._references)
-        prefix: list[Item] = [(Op.PARTICIPANT, tables.PREFIX + n) for n in range(3)]
+        prefix = [_do(Op.PARTICIPANT, tables.PREFIX + n) for n in range(3)]
         to_one = _submessage(submessage.INFO_DST, 0, _fixed(INFO_DST_FIELDS, {"guidPrefix": prefix}))
         self._directed = [*self._header, *to_one]
         self._participant(domain, lease, enclave)
         for writer, builtin in ((True, "publication"), (False, "subscription")):
             self._discovery(writer, builtin)
         self._user()
+        self._programs()
 
-    def _add(self, name: str, items: Sequence[Item]) -> None:
-        self.start[name], self.size[name] = len(self.words), len(items)
-        self.words += [op.value << 32 | argument for op, argument in (*items, (Op.END, 0))]
+    def _add(self, name: str, items: Sequence[Item], then: str = "IDLE") -> None:
+        """One of a datagram."""
+        self._place(name, items, then, "send")
+        self.size[name] = sum(map(_is_written, items)) - 2
+
+    def _place(self, name: str, items: Sequence[Item], then: str, *flags: str) -> None:
+        *before, (op, argument) = items
+        if op <= Op.OWN or op == Op.MESSAGE:
+            before, (op, argument) = list(items), _do(Op.END, 0, "quiet")
+        last = argument | _do(op, 0, "end", *flags)[1] | AFTERWARDS.index(then) << DO["then"].offset
+        self.words += [Op.END.value << 32] * (-len(self.words) % ALIGNMENT)
+        self.start[name] = len(self.words) // ALIGNMENT
+        self.words += [op.value << 32 | argument for op, argument in (*before, (op, last))]
+
+    def _to_group(self, port: int) -> list[Item]:
+        return [(Op.LITERAL, GROUP), (Op.OWN, self.own.own(port))]
 
     def _data(
         self,
@@ -158,8 +231,8 @@ class Rom:
                 "octetsToInlineQos": 16,
                 "readerId": ids[0],
                 "writerId": ids[1],
-                "writerSN.high": _register(Register.NUMBER_HIGH) if number is None else 0,
-                "writerSN.low": _register(Register.NUMBER) if number is None else number,
+                "writerSN.high": HIGH if number is None else 0,
+                "writerSN.low": NUMBER if number is None else number,
             },
         )
         items = [*fixed, *body]
@@ -175,20 +248,20 @@ class Rom:
             {
                 "readerId": ids[0],
                 "writerId": ids[1],
-                "firstSN.high": _register(Register.FIRST_HIGH),
-                "firstSN.low": _register(Register.FIRST),
-                "lastSN.high": (Op.WRITER, tables.WRITER_LAST_HI),
-                "lastSN.low": (Op.WRITER, tables.WRITER_LAST),
-                "count": (Op.WRITER, tables.WRITER_COUNT),
+                "firstSN.high": HIGH,
+                "firstSN.low": FIRST,
+                "lastSN.high": _do(Op.WRITER, tables.WRITER_LAST_HI),
+                "lastSN.low": _do(Op.WRITER, tables.WRITER_LAST),
+                "count": _do(Op.WRITER, tables.WRITER_COUNT),
             },
         )
-        return _submessage(submessage.HEARTBEAT, 0, fixed)
+        return [_quiet(FIRST), *_submessage(submessage.HEARTBEAT, 0, fixed)]
 
     def _acknack(self, ids: tuple[bytes | Item, bytes | Item]) -> list[Item]:
         fixed = _fixed(ack_nack.FIELDS, {"readerId": ids[0], "writerId": ids[1]})
         # A set of 32 numbers from the one that is wanted on, in which those that are missing are marked; maybe none.
-        state: list[Item] = [(Op.PROXY, tables.NEXT_HI), (Op.PROXY, tables.NEXT_LO), (Op.LITERAL, 32)]
-        state += [(Op.BITMAP, 0), (Op.WRITER, tables.WRITER_COUNT)]
+        state = [_do(Op.PROXY, tables.NEXT_HI), _do(Op.PROXY, tables.NEXT_LO), (Op.LITERAL, 32)]
+        state += [(Op.BITMAP, 0), _do(Op.WRITER, tables.WRITER_COUNT)]
         return _submessage(submessage.ACKNACK, ack_nack.FLAG_F, [*fixed, *state])
 
     def _participant(self, domain: int | None, lease: float, enclave: str) -> None:
@@ -209,29 +282,34 @@ class Rom:
         ids = guid.ENTITYID_SPDP_BUILTIN_PARTICIPANT_READER, guid.ENTITYID_SPDP_BUILTIN_PARTICIPANT_WRITER
         # It never changes, nor does its number.
         body = _words(own.emit(), self._references)
-        self._add("participant", [*self._header, *self._data(ids, body, number=1)])
+        announcement = [*self._header, *self._data(ids, body, number=1)]
+        self._add("participant", [*self._to_group(tables.GROUP_PORT_OWN), *announcement])
+        self._add("greeting", [*self._to_participant, *announcement])
 
     def _discovery(self, writer: bool, builtin: str) -> None:
         name = builtin.upper() + "S"
         theirs = getattr(guid, f"ENTITYID_SEDP_BUILTIN_{name}_READER")
         ours = getattr(guid, f"ENTITYID_SEDP_BUILTIN_{name}_WRITER")
+        directed = [*self._to_participant, *self._directed]
+        counted, told = [COUNT, *directed], [_quiet(NUMBER), *directed]
         for n, local in enumerate(self.own.writers if writer else self.own.readers):
             body = self._endpoint(local, n, writer)
-            self._add(f"{builtin}{n}", [*self._directed, *self._data((theirs, ours), body)])
+            self._add(f"{builtin}{n}", [*told, *self._data((theirs, ours), body)], "NEXT")
         key = _PREFIX + entity_id(0, writer)
         status = inline_qos.InlineQos(key, inline_qos.STATUS_DISPOSED | inline_qos.STATUS_UNREGISTERED).emit()
         which = int.from_bytes(entity_id(0, writer), "little")
-        told = status + parameter_list.encapsulate([(parameter_list.PID_ENDPOINT_GUID, key)])
-        gone = _words(told, {**self._references, which: (Op.ENTITY, which & ~0xFF0000)})
+        disposed = status + parameter_list.encapsulate([(parameter_list.PID_ENDPOINT_GUID, key)])
+        gone = _words(disposed, {**self._references, which: (Op.ENTITY, which & ~0xFF0000)})
         self._add(
             f"{builtin}_gone",
-            [*self._directed, *self._data((theirs, ours), gone, data.FLAG_Q | data.FLAG_K)],
+            [*told, *self._data((theirs, ours), gone, data.FLAG_Q | data.FLAG_K)],
+            "NEXT",
         )
-        self._add(f"{builtin}_heartbeat", [*self._directed, *self._heartbeat((theirs, ours))])
+        self._add(f"{builtin}_heartbeat", [*counted, *self._heartbeat((theirs, ours))])
         # Our reader of what peers say of the same kind of endpoint
         reader = getattr(guid, f"ENTITYID_SEDP_BUILTIN_{name}_READER")
         their_writer = getattr(guid, f"ENTITYID_SEDP_BUILTIN_{name}_WRITER")
-        self._add(f"{builtin}_acknack", [*self._directed, *self._acknack((reader, their_writer))])
+        self._add(f"{builtin}_acknack", [*counted, *self._acknack((reader, their_writer))])
 
     def _endpoint(self, local: Local, n: int, writer: bool) -> list[Item]:
         """With names that are known at run time only, parameters of the greatest size: behind its NUL a name ends in
@@ -261,31 +339,66 @@ class Rom:
         return items
 
     def _user(self) -> None:
-        key: Item = (Op.PROXY, tables.KEY)
+        key = _do(Op.PROXY, tables.KEY)
         writer: Item = (Op.ENTITY, int.from_bytes(entity_id(-1, True), "little"))
         reader: Item = (Op.ENTITY, int.from_bytes(entity_id(-1, False), "little"))
         body: list[Item] = [(Op.PADDING, CDR_LE), (Op.MESSAGE, 0)]
-        message = self._data((key, writer), body, length=True)
-        beat = self._heartbeat((key, writer))
-        to_group = self._data((guid.ENTITYID_UNKNOWN, writer), body, length=True)
-        self._add("group_message", [*self._header, *to_group])
-        beat_group = self._heartbeat((guid.ENTITYID_UNKNOWN, writer))
-        self._add("group_message_heartbeat", [*self._header, *to_group, *beat_group])
-        self._add("message", [*self._directed, *message])
-        self._add("message_heartbeat", [*self._directed, *message, *beat])
-        self._add("heartbeat", [*self._directed, *beat])
-        self._add("acknack", [*self._directed, *self._acknack((reader, key))])
+        to_one = [_do(Op.PROXY, tables.IP), _do(Op.PROXY, tables.PORT)]
+        to_group = self._to_group(tables.USER_GROUP_PORT_OWN)
+        for name, where, directed, ids in (
+            ("message", to_one, self._directed, (key, writer)),
+            ("group_message", to_group, self._header, (guid.ENTITYID_UNKNOWN, writer)),
+        ):
+            # Four cycles after the number of the message its size can be looked at, and that is known four later.
+            look = _do(Op.SIZE, 0, "quiet", "size")
+            message = [*where, *directed[:2], look, *directed[2:], *self._data(ids, body, length=True)]
+            number = _quiet(NUMBER, "place")
+            self._add(name, [number, *message], "NEXT")
+            self._add(f"{name}_heartbeat", [COUNT, number, *message, *self._heartbeat(ids)], "NEXT")
+        directed = [*to_one, *self._directed]
+        self._add("heartbeat", [COUNT, *directed, *self._heartbeat((key, writer))])
+        self._add("acknack", [COUNT, *directed, *self._acknack((reader, key))])
         nothing = _fixed(
             gap.FIELDS,
             {
                 "readerId": key,
                 "writerId": writer,
-                "gapStart.high": _register(Register.NUMBER_HIGH),
-                "gapStart.low": (Op.PROXY, tables.ASK_FROM),
+                "gapStart.high": _do(Op.WRITER, tables.WRITER_LAST_HI, "borrow"),
+                "gapStart.low": _do(Op.PROXY, tables.ASK_FROM),
             },
         )
-        base: list[Item] = [_register(Register.FIRST_HIGH), _register(Register.FIRST), (Op.LITERAL, 0)]
-        self._add("gap", [*self._directed, *_submessage(submessage.GAP, 0, [*nothing, *base])])
+        base: list[Item] = [HIGH, FIRST, (Op.LITERAL, 0)]
+        self._add(
+            "gap", [*directed, _quiet(FIRST), *_submessage(submessage.GAP, 0, [*nothing, *base])], "REPEAT"
+        )
+
+    def _programs(self) -> None:
+        """What is looked at and stored between datagrams."""
+        last = _do(Op.WRITER, tables.WRITER_LAST, "quiet", "last")
+        oldest = _do(Op.WRITER, tables.WRITER_OLDEST, "quiet", "oldest")
+        info = _do(Op.PROXY, tables.INFO, "quiet", "info")
+        start = _do(Op.PROXY, tables.START, "quiet", "start")
+        # So many as `age` says are told of again.
+        self._place("changed", [_do(Op.WRITER, tables.WRITER_LAST, "quiet", "minus_age", "store")], "TOLD")
+        self._place("who", [info], "WHO")
+        wanted = _do(Op.PROXY, tables.NEXT_LO, "quiet", "ask_from")
+        self._place("wanted", [_do(Op.PROXY, tables.LAST, "quiet", "last"), wanted], "WRITER")
+        asked = [
+            _do(Op.PROXY, getattr(tables, name.upper()), "quiet", name)
+            for name in ("acked", "ask_from", "ask_to")
+        ]
+        self._place("asked", [last, oldest, start, *asked], "READER")
+        # A message: where it will be kept; that it is, and one more than before, or as many; and to whom it goes.
+        self._place("next", [_do(Op.WRITER, tables.WRITER_LAST, "quiet", "one", "place"), oldest], "KEEP")
+        number = _do(Op.WRITER, tables.WRITER_LAST, "quiet", "one", "store", "last")
+        kept = [number, _do(Op.WRITER, 0, "quiet"), _quiet(HIGH, "store")]
+        self._place("kept", kept, "EACH READER")
+        self._place(
+            "kept_more", [_do(Op.WRITER, tables.WRITER_OLDEST, "quiet", "one", "store"), *kept], "EACH READER"
+        )
+        self._place(
+            "to_reader", [start, info, oldest, _do(Op.PROXY, tables.PORT, "quiet", "port")], "TO READER"
+        )
 
 
 def entity_id(n: int, writer: bool) -> bytes:
@@ -297,7 +410,3 @@ def entity_id(n: int, writer: bool) -> bytes:
 def _stand_in(room: int, letter: str) -> str:
     """A name that fills a room of so many octets, and whose first word nothing else is."""
     return letter * (room - 1)
-
-
-def _register(register: Register) -> Item:
-    return Op.REGISTER, register.value

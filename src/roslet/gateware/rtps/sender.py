@@ -6,14 +6,13 @@ from amaranth.hdl import Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from roslet.gateware.rtps import tables
-from roslet.gateware.rtps.composer import subject_layout
-from roslet.gateware.rtps.ports import ReadSignature, WriteSignature
+from roslet.gateware.rtps.composer import WINDOW, subject_layout
+from roslet.gateware.rtps.ports import WriteSignature
 from roslet.gateware.rtps.publishing import publish
 from roslet.gateware.rtps.repeating import repeat
-from roslet.gateware.rtps.rom import REGISTER_BITS, Rom
+from roslet.gateware.rtps.rom import ALIGNMENT, DO, Rom
 from roslet.gateware.rtps.scan import lowest
-from roslet.gateware.rtps.sending import COMPOSE, Sending
+from roslet.gateware.rtps.sending import Sending
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 from roslet.gateware.rtps.turns import JOB
 from roslet.gateware.words import MessageSignature
@@ -23,11 +22,10 @@ class Sender(wiring.Component):
     """Serves who is next.
 
     Ports: `publish0` .. for each writer of the user, the first `users` of the tables' writers: its messages. `job`, `valid`,
-    `taken`, of `Turns`; `matched`, the user proxies that there are; `group_port`, where all are to be announced to,
-    and messages for the group at the next; `peers` and `own`, read ports, and `write`, whose data mean nothing while `en` is
-    low; `template`, `start`, `done`, `which`, `register`, `subject`, of the composer; `room`, `busy`, `finish`, `ip`,
-    `port`, of the outbox; `writers`, `readers`, a bit for each of ours that is enabled; `again`, high for a cycle when every
-    proxy must be served once.
+    `taken`, of `Turns`; `matched`, the user proxies that there are; `write`, whose data mean nothing while `en` is
+    low; `template`, `load`, `go`, `done`, `word`, `do`, `borrow`, `subject`, of the composer; `room`, of the outbox;
+    `writers`, `readers`, a bit for each of ours that is enabled; `again`, high for a cycle when every proxy must be served
+    once.
 
     - When one of ours is enabled or disabled, all are told of again, under new numbers: of those that are not enabled, that
       they are gone.
@@ -44,7 +42,7 @@ class Sender(wiring.Component):
     Dropped: `drop_long{n}`, a message of more words than its writer's.
     """
 
-    def __init__(self, rom: Rom, peers: PeerMap, own: OwnMap, users: int, window: int = 3) -> None:
+    def __init__(self, rom: Rom, peers: PeerMap, own: OwnMap, users: int, window: int = WINDOW) -> None:
         if not 1 <= window <= 32:
             raise ValueError(f"an ACKNACK asks for 1 to 32 messages, not {window}")
         self._rom, self._peers, self._own, self._users, self._window = rom, peers, own, users, window
@@ -56,21 +54,16 @@ class Sender(wiring.Component):
                 "valid": In(1),
                 "taken": Out(1),
                 "matched": In(peers.endpoints),
-                "group_port": In(16),
-                "peers": Out(ReadSignature(peers.address_bits)),
-                "own": Out(ReadSignature(own.address_bits)),
                 "write": Out(WriteSignature(own.address_bits)),
-                "template": Out(range(len(rom.words))),
-                "start": Out(1),
+                "template": Out(range(-(-len(rom.words) // ALIGNMENT))),
+                "load": Out(1),
+                "go": Out(1),
                 "done": In(1),
-                "which": In(REGISTER_BITS),
-                "register": Out(32),
-                "subject": Out(subject_layout(peers, own)),
+                "word": In(32),
+                "do": In(DO),
+                "borrow": Out(1),
+                "subject": Out(subject_layout(peers, own, window)),
                 "room": In(1),
-                "busy": In(1),
-                "finish": Out(1),
-                "ip": Out(32),
-                "port": Out(16),
                 "again": Out(1),
                 **{
                     name: In(max(1, len(table)), init=(1 << max(1, len(table))) - 1)
@@ -85,15 +78,14 @@ class Sender(wiring.Component):
         self._yield, self._asked = Signal(), Signal()
         with m.FSM():
             self._idle(m, work)
-            self._announcements(m, work)
             self._who(m, work)
-            self._acknowledge(m, work)
-            repeat(m, work, self._asked, self.writers, self.readers)
+            published = "NEXT READER" if self._users else "IDLE"
+            repeat(m, work, self._asked, self.writers, self.readers, published)
             if self._users:
                 streams = [getattr(self, f"publish{n}").stream for n in range(self._users)]
                 long = [getattr(self, f"drop_long{n}") for n in range(self._users)]
-                publish(m, work, streams, long, self.matched, self.group_port, self._yield)
-            work.composition(m)
+                publish(m, work, streams, long, self.matched, self._yield)
+            work.composition(m, bool(self._users))
         return m
 
     def _idle(self, m: Module, work: Sending) -> None:
@@ -111,17 +103,21 @@ class Sender(wiring.Component):
                 subject.kind.eq(job.index),
                 subject.slot.eq(Mux(job.greet, job.index, job.index[2:])),
                 subject.endpoint.eq(job.index),
+                work.is_writer.eq(job.index[1]),
+                work.reliable.eq(1),
             ]
             with m.If(enabled != told):
                 m.d.sync += [told.eq(enabled), subject.builtin.eq(1), subject.kind.eq(0)]
                 m.next = "CHANGED"
             with m.Elif(self.valid & ~(pending.any() & ~self._yield)):
                 m.d.comb += self.taken.eq(1)
-                m.next = "LOOK"
+                m.next = "WHO"
+                with m.If(job.user):
+                    work.run(m, work.rom.start["who"])
                 with m.If(job.announce):
-                    m.next = "ANNOUNCE"
+                    work.compose(m, self._rom.start["participant"])
                 with m.If(job.greet):
-                    m.next = "GREET"
+                    work.compose(m, self._rom.start["greeting"])
             if self._users:
                 with m.Elif(pending.any()):
                     m.d.sync += [work.publishing.eq(1), subject.builtin.eq(0), subject.endpoint.eq(0)]
@@ -134,86 +130,24 @@ class Sender(wiring.Component):
 
         # All endpoints are told of again, by new numbers: of writers, then of readers.
         with m.State("CHANGED"):
-            work.ask_own(m, tables.WRITER_LAST)
-            m.next = "LAST TOLD"
-        with m.State("LAST TOLD"):
-            m.next = "NEW LAST"
-        with m.State("NEW LAST"):
-            many = Mux(subject.kind[0], len(self._own.readers), len(self._own.writers))
-            m.d.comb += work.increment.eq(many)
-            work.store(m, tables.WRITER_LAST)
+            m.d.sync += subject.age.eq(Mux(subject.kind[0], -len(self._own.readers), -len(self._own.writers)))
+            work.run(m, work.rom.start["changed"])
+        with m.State("TOLD"):
             m.d.sync += subject.kind.eq(1)
             m.next = "CHANGED"
             with m.If(subject.kind[0]):
                 m.d.comb += self.again.eq(1)
                 m.next = "IDLE"
 
-    def _announcements(self, m: Module, work: Sending) -> None:
-        template = self._rom.start["participant"]
-        with m.State("ANNOUNCE"):
-            m.d.comb += [work.to_all.eq(1), work.group_port.eq(self.group_port)]
-            work.compose(m, template, "IDLE", COMPOSE)
-        with m.State("GREET"):
-            work.ask(m, tables.META_IP, of_participant=1)
-            m.next = "GREET WHERE"
-        with m.State("GREET WHERE"):
-            work.ask(m, tables.META_PORT, of_participant=1)
-            m.next = "GREET IP"
-        with m.State("GREET IP"):
-            m.d.comb += work.take_ip.eq(1)
-            m.next = "GREET PORT"
-        with m.State("GREET PORT"):
-            m.d.comb += work.take_port.eq(1)
-            work.compose(m, template, "IDLE", COMPOSE)
-
     def _who(self, m: Module, work: Sending) -> None:
-        """A proxy: what it is, where it is."""
-        subject = self.subject
-        is_writer = Signal()
-        info = self.peers.data
-        with m.State("LOOK"):
-            work.ask(m, tables.INFO)
-            m.next = "LOOKED"
-        with m.State("LOOKED"):
-            m.next = "WHO"
+        """A proxy: what it is, and of a peer's writer what it says its last is, and what we want."""
         with m.State("WHO"):
-            work.ask(m, Mux(subject.builtin, tables.META_IP, tables.IP), subject.builtin)
-            m.d.sync += [is_writer.eq(subject.kind[1]), work.reliable.eq(1)]
-            with m.If(~subject.builtin):
-                m.d.sync += [
-                    is_writer.eq(info[tables.INFO_WRITER]),
-                    work.reliable.eq(info[tables.INFO_RELIABLE]),
-                    subject.local.eq(info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8]),
-                    subject.slot.eq(info[tables.INFO_SLOT : tables.INFO_SLOT + 8]),
-                ]
-            m.next = "WHERE"
-        with m.State("WHERE"):
-            work.ask(m, Mux(subject.builtin, tables.META_PORT, tables.PORT), subject.builtin)
             m.next = "IDLE"
-            with m.If(is_writer & self._asked):
-                m.next = "WRITER"
-            with m.If(~is_writer & work.reliable):
-                m.next = "READER"
-
-    def _acknowledge(self, m: Module, work: Sending) -> None:
-        """A peer's writer: what it says its last is, and what we want."""
+            with m.If(work.is_writer & self._asked):
+                work.run(m, work.rom.start["wanted"])
+            with m.If(~work.is_writer & work.reliable):
+                work.run(m, work.rom.start["asked"])
         with m.State("WRITER"):
-            m.d.comb += work.take_ip.eq(1)
-            work.ask(m, tables.LAST)
-            m.next = "WRITER PORT"
-        with m.State("WRITER PORT"):
-            m.d.comb += work.take_port.eq(1)
-            work.ask(m, tables.NEXT_LO)
-            m.next = "WANTED"
-        with m.State("WANTED"):
-            m.d.sync += work.last.eq(self.peers.data)
-            work.ask_own(m, tables.WRITER_COUNT)
-            m.next = "MISSING"
-        with m.State("MISSING"):
-            m.next = "ACKNACK"
-            with m.If(self.peers.data == 0):
-                m.next = "IDLE"  # nothing has been heard of it
-        with m.State("ACKNACK"):
-            m.d.sync += work.age.eq(work.age_of_given())
-            work.store(m, tables.WRITER_COUNT)
-            work.compose(m, work.by_kind("acknack"), "IDLE", COMPOSE)
+            m.next = "IDLE"
+            with m.If(work.heard):
+                work.compose(m, work.by_kind("acknack"))

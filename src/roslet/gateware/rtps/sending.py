@@ -1,129 +1,107 @@
-"""What the states of the sender share: whom they serve, the numbers of messages, and the ways to memories and composer."""
+"""What the states of the sender share: whom they serve, the ages of messages, and the ways to composer and memory."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
-from amaranth.hdl import Cat, Module, Mux, Signal, Value, signed
+from amaranth.hdl import C, Module, Mux, Signal, Value
 
 from roslet.gateware.octets import pick
-from roslet.gateware.rtps.parameters import GROUP
-from roslet.gateware.rtps.rom import Register, Rom
+from roslet.gateware.rtps import tables
+from roslet.gateware.rtps.composer import age_shape
+from roslet.gateware.rtps.rom import AFTERWARDS, DO, PUBLISHING, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
-
-NUMBERS, COMPOSE = "NUMBERS", "COMPOSE"
-"""The state before a template with numbers is composed, and that before one whose NUMBER_HIGH is known."""
 
 
 class Sending:
     """Of the sender `sender`, whose ports it drives.
 
     Numbers are known by their age, how far they are behind `last`, the writer's last: 0, it is the last; -1, the next; all
-    that are older than anything kept are `max_age` old. `age` and `oldest`: of the message that is spoken of, and of the
-    oldest for who is served.
+    that are older than anything kept are `max_age` old. `subject.age` and `oldest`: of the message that is spoken of, and of
+    the oldest for who is served.
     """
 
     def __init__(self, m: Module, sender: Any, rom: Rom, peers: PeerMap, own: OwnMap, window: int) -> None:
         self.rom, self.peers, self.own = rom, peers, own
         self.ports, self.subject = sender, sender.subject
-        told = len(own.writers), len(own.readers)
-        bits = max(window, *told, *(writer.depth for writer in own.writers)).bit_length()
-        self.age_shape, self.max_age = signed(bits + 1), (1 << bits) - 1
-        self.last, self.last_high = Signal(32), Signal(32)
-        self.age, self.oldest = Signal(self.age_shape), Signal(self.age_shape)
-        self.reliable = Signal()  # the peer's endpoint
-        self.publishing, self.to_group = Signal(), Signal()  # a message of the user's; to the group now
-        self._afterwards: list[str] = []
-        self._after = Signal(4)
+        self.age_shape = age_shape(own, window)
+        self.publishing = Signal()  # a message of the user's
+        # What is known of a proxy: it is a writer, or one for our writer, and reliable; it is in the group; something has
+        # been heard of it. Of a reader: where it begins, what it asks for, and whether it lacks something.
+        self.is_writer, self.is_ours, self.reliable = Signal(), Signal(), Signal()
+        self.in_group, self.heard, self.unacknowledged = Signal(), Signal(), Signal()
+        self.start, self.ask_to = Signal(self.age_shape), Signal(self.age_shape)
+        self.last = Signal(32)
+        self.placed, self.counted = (
+            Signal(),
+            Signal(),
+        )  # of the message: where it belongs; all that was looked at before
+        self._take(m)
 
-        # What the memories are looked at for, unless the composer looks: a word of the proxy that is served, or of
-        # its participant; one of our writer, or of its message.
-        self.chosen, self._composing = Signal(2), Signal()
-        self.word, self.of_participant = Signal(4), Signal()
-        self.own_word, self.of_sample = Signal(2), Signal()
-        with m.If(~self._composing):
-            with m.If(self.of_participant):
-                m.d.comb += sender.peers.addr.eq(peers.participant(self.subject.slot, self.word))
-            with m.Elif(self.subject.builtin):
-                builtin = peers.builtin(self.subject.slot, self.subject.kind, self.word)
-                m.d.comb += sender.peers.addr.eq(builtin)
-            with m.Else():
-                m.d.comb += sender.peers.addr.eq(peers.endpoint(self.subject.endpoint, self.word))
-            with m.If(self.of_sample):
-                m.d.comb += sender.own.addr.eq(self.subject.sample)
-            with m.Else():
-                m.d.comb += sender.own.addr.eq(self._writer_word(self.own_word))
+    def _take(self, m: Module) -> None:
+        """What the templates look at."""
+        ports, subject, do, word = self.ports, self.subject, self.ports.do, self.ports.word
+        # By how much what was looked at a cycle before is behind the last: the highest bit is borrowed from the words above,
+        # the next says that it is yet to come.
+        behind, later = Signal(33), Signal(DO)
+        m.d.sync += [behind.eq(self.last - word), later.eq(do)]
+        with m.If(do.store):
+            m.d.comb += [ports.write.en.eq(1), ports.write.addr.eq(self._writer_word(do.word))]
+        m.d.comb += ports.write.data.eq(word)
+        with m.If(do.last):
+            m.d.sync += self.last.eq(word)
+        with m.If(do.oldest):
+            m.d.sync += subject.oldest.eq(word)
+        local = word[tables.INFO_LOCAL : tables.INFO_LOCAL + 8]
+        with m.If(do.info):
+            m.d.sync += [
+                self.is_writer.eq(word[tables.INFO_WRITER]),
+                self.reliable.eq(word[tables.INFO_RELIABLE]),
+                self.is_ours.eq(local == subject.local),
+                subject.slot.eq(word[tables.INFO_SLOT : tables.INFO_SLOT + 8]),
+            ]
+            with m.If(~self.publishing):
+                m.d.sync += subject.local.eq(local)
+        with m.If(do.port):
+            m.d.sync += self.in_group.eq(word[tables.PORT_GROUP])
+        with m.If(ports.done):
+            m.d.sync += self.counted.eq(1)
+        with m.If(do.place):
+            m.d.sync += self.placed.eq(1)
+            m.d.sync += subject.sample.eq(self.sample(word))
+        with m.If(do.size):
+            m.d.sync += [subject.words.eq(word), subject.padding.eq(word[16:18])]
+        with m.If(do.ask_from):
+            m.d.sync += self.heard.eq(word != 0)
+        age = self._age(behind)
+        with m.If(later.start):
+            m.d.sync += self.start.eq(age)
+        with m.If(later.acked):
+            m.d.sync += self.unacknowledged.eq(~behind[31])
+        with m.If(later.ask_from):
+            m.d.sync += [subject.age.eq(age), ports.borrow.eq(behind[32])]
+        with m.If(later.ask_to):
+            m.d.sync += self.ask_to.eq(Mux(age[-1], 0, age))
 
-        # What our own memory gives, and more
-        self.increment, self.sum = Signal(8, init=1), Signal(33)
-        m.d.comb += [self.sum.eq(sender.own.data + self.increment), sender.write.data.eq(self.sum)]
-        # Where it goes: to whom what peers gave belongs, or to the group of all
-        self.take_ip, self.take_port, self.to_all, self.group_port = Signal(), Signal(), Signal(), Signal(16)
-        with m.If(self.take_ip):
-            m.d.sync += sender.ip.eq(sender.peers.data)
-        with m.If(self.take_port):
-            m.d.sync += sender.port.eq(sender.peers.data)
-        with m.If(self.to_all):
-            m.d.sync += [sender.ip.eq(GROUP), sender.port.eq(self.group_port)]
-        # By how much what they gave a cycle before is behind the last: the highest bit is borrowed from the words above, the
-        # next says that it is yet to come.
-        self.behind = Signal(33)
-        m.d.sync += self.behind.eq(self.last - sender.peers.data)
-        self._numbers(m)
-        m.d.comb += self.subject.missing.eq(
-            Cat(self.age >= n for n in reversed(range(window))) << 32 - window
-        )
+    def _age(self, behind: Value) -> Value:
+        bits = self.age_shape.width - 1
+        older = Mux(behind[bits:31].any(), (1 << bits) - 1, behind[:bits])
+        return Mux(behind[31], C(-1, bits + 1), older).as_signed()
 
-    def _numbers(self, m: Module) -> None:
-        """`number`, which the composer asks for, or, while that is idle, `chosen` says: its lower word, or the higher one,
-        which needs to know what was borrowed from it, or carried, for the lower."""
-        which = Signal(2)
-        high, is_number = which[0], which[1]
-        self.borrowed, first_borrowed = Signal(signed(2)), Signal(signed(2))
-        self._first_borrowed = first_borrowed
-        age = Mux(is_number, self.age, self.oldest)
-        less = Mux(is_number, self.borrowed, first_borrowed)
-        difference = Signal(signed(34))
-        m.d.comb += [
-            which.eq(Mux(self._composing, self.ports.which, self.chosen)),
-            difference.eq(Mux(high, self.last_high, self.last) - Mux(high, less, age)),
-            self.ports.register.eq(difference),
-        ]
-        self.number = difference[:32]
-        self._borrow = (-difference[32:34].as_signed())[:2].as_signed()
-
-    def age_of_given(self) -> Value:
-        """The age of the number whose lower word peers gave a cycle before."""
-        bits, behind = len(self.age) - 1, self.behind
-        older = Mux(behind[bits:31].any(), self.max_age, behind[:bits])
-        return Mux(behind[31], -1, older).as_signed()
-
-    # -- what states do
-
-    def ask(self, m: Module, word: int | Value, of_participant: Value | int = 0) -> None:
-        """For a word of the proxy that is served, or of its participant."""
-        m.d.comb += [self.word.eq(word), self.of_participant.eq(of_participant)]
-
-    def ask_own(self, m: Module, word: int) -> None:
-        """For a word of our writer."""
-        m.d.comb += self.own_word.eq(word)
-
-    def store(self, m: Module, word: int) -> None:
-        """`sum`, as a word of our writer."""
-        m.d.comb += [self.ports.write.en.eq(1), self.ports.write.addr.eq(self._writer_word(word))]
-
-    def _writer_word(self, word: int | Value) -> Value:
+    def _writer_word(self, word: Value) -> Value:
         subject = self.subject
         return self.own.writer(Mux(subject.builtin, subject.kind[0], subject.local), word, subject.builtin)
+
+    def sample(self, number: Value) -> Value:
+        """Where our writer keeps the message with this number."""
+        return self.choose([self.own.sample(n, number) for n in range(len(self.own.writers))] or [C(0)])
+
+    # -- what states do
 
     def choose(self, values: Sequence[Value]) -> Value:
         """That of our endpoint."""
         return pick(list(values), self.subject.local[: max(0, (len(values) - 1).bit_length())])
-
-    def sample(self, number: Value) -> Value:
-        """Where our writer keeps the message with this number."""
-        return self.choose([self.own.sample(n, number) for n in range(len(self.own.writers))])
 
     def by_kind(self, name: str) -> Value:
         """The template for our discovery writer, or reader, that is served, or for the user's."""
@@ -131,34 +109,27 @@ class Sending:
         of_builtin = Mux(subject.kind[0], start[f"subscription_{name}"], start[f"publication_{name}"])
         return Mux(subject.builtin, of_builtin, start[name])
 
-    def compose(self, m: Module, template: Value | int, then: str, first: str = NUMBERS) -> None:
-        """Compose it for `ip` and `port`, when there is room, and go on; in state `first` first."""
-        if then not in self._afterwards:
-            self._afterwards.append(then)
-        m.d.sync += [
-            self.ports.template.eq(template),
-            self._after.eq(self._afterwards.index(then)),
-            self.chosen.eq(Register.NUMBER if first == NUMBERS else Register.FIRST),
-        ]
-        m.next = first
+    def compose(self, m: Module, template: Value | int) -> None:
+        """Compose it when there is room, and go on where its end says."""
+        self._begin(m, template, self.ports.room)
 
-    def composition(self, m: Module) -> None:
-        """The states in which that happens: the last of an FSM."""
+    def run(self, m: Module, template: Value | int) -> None:
+        """Do at once what that template says, which is not of a datagram, and go on where its end says."""
+        self._begin(m, template, C(1, 1))
+
+    def _begin(self, m: Module, template: Value | int, now: Value) -> None:
+        m.d.comb += [self.ports.template.eq(template), self.ports.load.eq(1), self.ports.go.eq(now)]
+        m.next = "COMPOSING"
+        with m.If(~now):
+            m.next = "COMPOSE"
+
+    def composition(self, m: Module, publishes: bool) -> None:
+        """The states in which that happens: the last of an FSM, which has those of `publish` if it `publishes`."""
         ports = self.ports
-        with m.State(NUMBERS):
-            m.d.sync += [self.borrowed.eq(self._borrow), self.chosen.eq(Register.FIRST)]
-            m.next = COMPOSE
-        with m.State(COMPOSE):
-            m.d.sync += self._first_borrowed.eq(self._borrow)
-            with m.If(ports.room & ~ports.busy):
-                m.d.comb += ports.start.eq(1)
-                m.d.sync += self._composing.eq(1)
-                m.next = "COMPOSING"
-        with m.State("COMPOSING"):
-            m.d.comb += ports.finish.eq(ports.done)
-            with m.If(ports.done):
-                m.d.sync += self._composing.eq(0)
-                with m.Switch(self._after):
-                    for n, state in enumerate(self._afterwards):
-                        with m.Case(n):
-                            m.next = state
+        with m.State("COMPOSE"), m.If(ports.room):
+            m.d.comb += ports.go.eq(1)
+            m.next = "COMPOSING"
+        with m.State("COMPOSING"), m.If(ports.done), m.Switch(ports.do.then):
+            for n, state in enumerate(AFTERWARDS if publishes else AFTERWARDS[:PUBLISHING]):
+                with m.Case(n):
+                    m.next = state

@@ -145,8 +145,16 @@ class Local:
 
 
 # Of our own memory
-OWN_PREFIX, OWN_IP, META_PORT_OWN, USER_PORT_OWN, ZERO = 0, 3, 4, 5, 6
-OWN_WORDS = 8
+OWN_PREFIX, OWN_IP, META_PORT_OWN, USER_PORT_OWN, ZERO, GROUP_PORT_OWN, USER_GROUP_PORT_OWN = (
+    0,
+    3,
+    4,
+    5,
+    6,
+    7,
+    8,
+)
+OWN_WORDS = 16
 # Of a writer: the number of its last message; how many before that are kept, -1 where there is none; and the count of the
 # heartbeats that it sends, and of the ACKNACKs of our reader with the same number: each needs one that rises, no more
 WRITER_LAST, WRITER_LAST_HI, WRITER_OLDEST, WRITER_COUNT = 0, 1, 2, 3
@@ -213,13 +221,16 @@ class OwnMap:
         spread = self.text_bits + self.local_bits
         return self._texts + (number << self.text_bits) + (is_type << spread) + (reader << (spread + 1))
 
-    def init(self, prefix: bytes, ip: bytes, meta_port: int, user_port: int) -> list[int]:
-        """What the memory holds at the beginning."""
+    def init(
+        self, prefix: bytes, ip: bytes, meta_port: int, user_port: int, group_port: int = 0
+    ) -> list[int]:
+        """What the memory holds at the beginning. `group_port`, of discovery; of messages, the next."""
         words = [0] * self.depth
         for at, octets in ((OWN_PREFIX, prefix), (OWN_IP, ip)):
             for n in range(0, len(octets), 4):
                 words[self.own(at) + n // 4] = int.from_bytes(octets[n : n + 4], "little")
         words[self.own(META_PORT_OWN)], words[self.own(USER_PORT_OWN)] = meta_port, user_port
+        words[self.own(GROUP_PORT_OWN)], words[self.own(USER_GROUP_PORT_OWN)] = group_port, group_port + 1
         for number in range(len(self.writers)):
             words[self.writer_address(number, WRITER_OLDEST)] = NOTHING
         for reader, locals_ in enumerate((self.writers, self.readers)):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from amaranth.hdl import C, Cat, Module, Mux, ResetInserter, Signal, Value
 from amaranth.lib.wiring import In, Out, connect
 
@@ -11,6 +13,7 @@ from roslet.gateware.gather import gather
 from roslet.gateware.meta import UDP_TX
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.loader import Loader, Store
+from roslet.gateware.rtps.parameters import USER_GROUP_PORT
 from roslet.gateware.rtps.participant import Participant
 from roslet.gateware.rtps.periods import BITS, PRESCALER_BITS, QUICK_PERIOD, Periods
 from roslet.gateware.rtps.rom import entity_id
@@ -201,7 +204,7 @@ class Ros2Ether(EthernetUdp):
             stack.groups[0].ip.eq(int.from_bytes(locator.SPDP_MULTICAST_ADDRESS, "little")),
         ]
         self._clock(m, running, publishing)
-        self._load_and_publish(m, loaded, publishing, ports[1], ports[2])
+        self._load_and_publish(m, loaded, publishing, ports)
         self._subscribe(m, subscribing)
 
     def _port(self, m: Module, name: str) -> Signal:
@@ -223,9 +226,7 @@ class Ros2Ether(EthernetUdp):
             *(getattr(periods, inside).eq(getattr(self, outside)) for outside, inside in PERIODS.items()),
         ]
 
-    def _load_and_publish(
-        self, m: Module, loaded: Value, publishing: Value, meta_port: Value, user_port: Value
-    ) -> None:
+    def _load_and_publish(self, m: Module, loaded: Value, publishing: Value, ports: Sequence[Value]) -> None:
         """Words of ports, one at a time: of the message, and before, once, of all that has to be in the node's memory."""
         m.submodules.publisher = publisher = self._publisher
         own = self._participant.own_map
@@ -234,12 +235,14 @@ class Ros2Ether(EthernetUdp):
 
         def store(address: int, *values: Value, moved: bool = False) -> None:
             for n, value in enumerate(values):
-                place = next((place for place, word in enumerate(words) if word is value), len(words))
-                words[place:] = words[place:] or [value]
-                program.append((address + n, place, moved))
+                index = next((index for index, word in enumerate(words) if word is value), len(words))
+                if index == len(words):
+                    words.append(value)
+                program.append((address + n, index, moved))
 
         prefix = _split(self.ros2_guid_prefix)
-        store(own.own(tables.OWN_PREFIX), *prefix, self.ip_addr, meta_port, user_port)
+        store(own.own(tables.OWN_PREFIX), *prefix, self.ip_addr, *ports[1:])
+        store(own.own(tables.GROUP_PORT_OWN), ports[0], ports[0] + USER_GROUP_PORT)
         for reader, kind in enumerate(("pub", "sub")):
             for is_type, text in enumerate(("topic_name", "topic_type_name")):
                 port = getattr(self, f"ros2_{kind}_{text}")
