@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from amaranth.hdl import Cat, Elaboratable, Module, Signal
+from amaranth.hdl import Cat, Elaboratable, Module, Mux, Signal
 from amaranth.lib import memory
+from amaranth.lib.wiring import Out
 
 from gateware.frames import Bad, Bench
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
@@ -139,7 +140,7 @@ class Tables(Elaboratable):
         theirs: Sequence[int] = (),
         **blocks: Any,
     ) -> None:
-        self._blocks = blocks
+        self._blocks, self._peers = blocks, peers
         self.__dict__.update(blocks)
         self.peers_memory = memory.Memory(shape=32, depth=peers.depth, init=list(theirs))
         self.own_memory = memory.Memory(shape=32, depth=own.depth, init=list(init))
@@ -161,17 +162,21 @@ class Tables(Elaboratable):
                     with m.If(getattr(block, f"hide_{name}")):
                         m.d.sync += given.eq(0)
         write = self.peers_memory.write_port()
-        ports = [
-            getattr(block, name)
-            for block in self._blocks.values()
-            for name in ("write", "source")
-            if name in block.signature.members
-        ]
+        ports = [block.write for block in self._blocks.values() if "write" in block.signature.members]
         m.d.comb += [
             write.en.eq(Cat(port.en for port in ports).any()),
             write.addr.eq(_either(port.addr for port in ports)),
-            write.data.eq(_either(port.data for port in ports)),
+            write.data.eq(_either(Mux(port.en, port.data, 0) for port in ports)),
         ]
+        for block in self._blocks.values():
+            members = block.signature.members
+            if "keep" in members and members["keep"].flow == Out:
+                with m.If(block.keep.en):
+                    m.d.comb += [
+                        write.en.eq(1),
+                        write.addr.eq(self._peers.scratch(block.keep.word)),
+                        write.data.eq(block.i.stream.payload.data),
+                    ]
         return m
 
     def peek(self, ctx: Any) -> list[int]:

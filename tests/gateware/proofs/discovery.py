@@ -28,7 +28,7 @@ IDS = 2
 """Bits in which prefixes differ, and entity ids."""
 LEASE = 2
 """Bits of a lease, in seconds."""
-LIST = 30
+LIST = 32
 """Cycles of a list, at most."""
 SWEEP = 20
 """Cycles of a sweep, at most: of one that removes everybody."""
@@ -50,13 +50,14 @@ class CutParameters(wiring.Component):
         m.d.comb += self.i.stream.ready.eq(Mux(self.done, self.proceed, self.takes))
         return m
 
-    def contract(self, m: Module, within: Value) -> None:
-        """Assume it. `within`: a list's first item was there before."""
+    def contract(self, m: Module, within: Value, idle: Value) -> None:
+        """Assume it, and when words are kept that came before. `within`: a list's first item was there before; `idle`, the
+        walker is."""
         i = self.i.stream
         good = i.valid & i.payload.end & ~i.payload.bad
         held, read, same = Signal(), Signal.like(self.read.as_value()), Signal.like(self.same)
-        wrote = Signal()
-        m.d.sync += wrote.eq(self.write.en)
+        wrote, kept = Signal(), Signal(2)
+        m.d.sync += [wrote.eq(self.write.en), kept.eq(Cat(self.keep.en, kept))]
         m.d.sync += [held.eq(self.done & ~self.proceed), read.eq(self.read), same.eq(self.same)]
         addresses = Cat(self.peers.addr, self.own.addr, self.write.addr, self.write.data, self.write.en)
         m.d.comb += [
@@ -65,7 +66,9 @@ class CutParameters(wiring.Component):
             Assume(~(good & i.ready) | (self.done ^ self.drop_malformed), "told"),
             Assume(~self.drop_malformed | (good & i.ready), "told"),
             Assume(~self.write.en | (self.write.addr[4:] == PEERS._scratch >> 4), "kept"),
-            Assume(((i.valid | within) & ~self.done) | (addresses == 0), "quiet"),
+            Assume(~self.keep.en | ~(i.valid | within | idle), "kept before"),
+            Assume(~kept.any() | ~i.valid, "kept before"),
+            Assume(((i.valid | within) & ~self.done) | kept[0] | (addresses == 0), "quiet"),
             Assume(~self.done | ~wrote, "quiet"),
         ]
 
@@ -118,6 +121,11 @@ class PeerMemory:
 
 
 LOADS = "m.d.sync += [step.eq(step + 1), addressed.eq(step), before.eq(addressed)]"
+
+
+FULL = "with m.If(slot == {}):\n                m.d.comb += self.drop_full"
+SWEPT = "with m.If(slot == {}):\n                    m.d.sync += sweeping"
+LAST_PLACE = "with m.If(endpoint == peers.endpoints - {}):"
 
 
 class _Tables(Spec):
@@ -182,7 +190,7 @@ class _Tables(Spec):
         """Assume what `Walker`, `Submessages` and `Parameters` give."""
         dut, memory = self.dut, self.memory
         frames = self.assume(m, "i")
-        self.cut.contract(m, frames.within)
+        self.cut.contract(m, frames.within, dut.idle)
         i, meta = dut.i.stream, dut.i.meta
         begins = i.valid & ~frames.within
         fresh = self.free(1, "fresh")  # its sender was looked up, and not only seen to be there still
@@ -351,7 +359,7 @@ class ParticipantsSpec(_Tables):
     Of the four proxies of a participant one is made here.
     """
 
-    quick, deep = 24, 36
+    quick, deep = 27, 39
     scale = (
         *_Tables.scale,
         ("with m.If(step == 15 + READ_LATENCY):", "with m.If(step == 3 + READ_LATENCY):"),
@@ -364,26 +372,22 @@ class ParticipantsSpec(_Tables):
         ),
         Bug(
             "evicted",
-            "with m.If(~self.peers.data[tables.LEASE_BITS]):",
-            "with m.If(self.peers.data[:tables.LEASE_BITS].any()):",
+            "some = ~self.peers.data[tables.LEASE_BITS]",
+            "some = self.peers.data[: tables.LEASE_BITS].any()",
         ),
-        Bug("expires", "with m.If(~self.peers.data[tables.LEASE_BITS]):", "with m.If(1):"),
-        Bug("lease", "step == tables.LEASE + READ_LATENCY", "step == tables.USER_PORT + READ_LATENCY"),
+        Bug("expires", "some = ~self.peers.data[tables.LEASE_BITS]", "some = C(1, 1)"),
+        Bug("lease", "step == tables.USER_PORT + READ_LATENCY", "step == tables.PREFIX + 2 + READ_LATENCY"),
         Bug(
             "left",
             'm.If(meta.known):\n                m.next = "REMOVE"',
             "m.If(meta.known):\n                pass",
         ),
         Bug("earned", "with m.Elif(read.refused):", "with m.Elif(0):"),
-        Bug("entered", "with m.Elif(~meta.known & arrived):", "with m.Elif(~meta.known & self.alive.any()):"),
+        Bug("entered", "with m.Elif(~arrived):", "with m.Elif(~self.alive.any()):"),
         Bug("greeted", "self.greet.eq(1)", "self.greet.eq(read.user)"),
-        Bug("words", "with m.Elif(~meta.known & self._slots.full):", "with m.Elif(0):"),
+        Bug("words", "with m.Elif(self.alive.bit_select(slot[: peers.slot_bits], 1)):", "with m.Elif(0):"),
         Bug("lost", "tables.INFO_SLOT + len(slot)] == slot", "tables.INFO_SLOT + len(slot)] != slot"),
-        Bug(
-            "full",
-            "with m.Elif(~meta.known & self._slots.full):",
-            "with m.Elif(~meta.known & self.alive.any()):",
-        ),
+        Bug("full", FULL.format("peers.participants"), FULL.format("peers.participants - 1")),
     )
 
     def judge(self, m: Module) -> None:
@@ -448,13 +452,13 @@ class EndpointsSpec(_Tables):
     else, nor is a participant's. `single`: none has two. `words`: nothing is written but to its own place, or a free one.
     """
 
-    quick, deep = 26, 40
+    quick, deep = 30, 44
     bugs = (
         Bug(
             "single",
-            "with m.If(~found):\n                    m.d.sync += endpoint.eq(self._places.free)",
-            "with m.If(~found | ~self._places.full):\n"
-            "                    m.d.sync += [endpoint.eq(self._places.free), found.eq(0)]",
+            'with m.Elif(found):\n                m.next = "PROXY"',
+            'with m.Elif(found & (endpoint == 0)):\n                m.next = "PROXY"\n'
+            '            with m.Elif(found):\n                m.d.sync += found.eq(0)\n                m.next = "PLACE"',
         ),
         Bug("right", "is_writer, reliable)", "is_writer, read.reliable)"),
         Bug("due", "len(endpoint)), C(1, 1))", "len(endpoint)), C(0, 1))"),
@@ -464,13 +468,13 @@ class EndpointsSpec(_Tables):
             "self._joins.eq(transient)",
         ),
         Bug("unmatched", "read.type & ~same.any()", "read.type & same.any()"),
-        Bug("full", "with m.Elif(~found & self._places.full):", "with m.Elif(self._places.full):"),
+        Bug("full", LAST_PLACE.format(1), LAST_PLACE.format(2)),
         Bug(
             "lost",
             "with m.Elif(~read.guid | ~read.topic | ~read.type):",
             "with m.Elif(~read.guid | ~read.topic | ~read.type):\n                m.d.sync += self.matched.eq(0)",
         ),
-        Bug("words", "endpoint.eq(self._places.free)", "endpoint.eq(0)"),
+        Bug("words", "with m.If(self.matched.bit_select(endpoint, 1)):", "with m.If(0):"),
     )
 
     def judge(self, m: Module) -> None:
@@ -516,12 +520,12 @@ class ManyListsSpec(_Tables):
     """`distinct`: a participant has one place, whatever it says, and how often, in one datagram or in several."""
 
     once = False
-    quick, deep = 36, 50
+    quick, deep = 40, 54
     scale = (
         *_Tables.scale,
         ("with m.If(step == 15 + READ_LATENCY):", "with m.If(step == 3 + READ_LATENCY):"),
     )
-    bugs = (Bug("distinct", "with m.Elif(~meta.known & arrived):", "with m.Elif(0):"),)
+    bugs = (Bug("distinct", "with m.Elif(~arrived):", "with m.Else():"),)
 
     def judge(self, m: Module) -> None:
         dut, meta = self.dut, self.dut.i.meta
@@ -543,7 +547,7 @@ class BoundsSpec(_Tables):
     quick, deep = 40, 80
     bugs = (
         Bug("proceeds", "with m.If(step == 15 + READ_LATENCY):", "with m.If(step[:4] == 16):"),
-        Bug("swept", "with m.If(slot == peers.participants):", "with m.If(slot == 255):"),
+        Bug("swept", SWEPT.format("peers.participants"), SWEPT.format("255")),
     )
 
     def properties(self, m: Module) -> None:
@@ -551,7 +555,7 @@ class BoundsSpec(_Tables):
         self.ports += [*cut.free, dut.any_alive, dut.any_matched, dut.any_heard, dut.any_endpoint]
         m.d.sync += dut.loads.eq(0)
         frames = self.assume(m, "i")
-        cut.contract(m, frames.within)
+        cut.contract(m, frames.within, dut.idle)
         held = Signal()
         list_, sweep = Signal(range(LIST + 2)), Signal(range(SWEEP + 2))
         m.d.sync += [

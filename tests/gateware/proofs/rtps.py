@@ -183,8 +183,9 @@ def verdict_assumed(m: Module, dut: Any) -> None:
 
 class SubmessagesSpec(Spec):
     """`user`: a message of the user's ends well only where the body does, and `word`: is made of its words. `over`: a
-    body's end is not taken before discovery has taken its. `kept`: but
-    for the scratch area, something is written only at a good end: nothing is kept of a datagram that ends badly. `taken`:
+    body's end is not taken before discovery has taken its. `kept`: something is
+    written only at a good end: nothing is kept of a datagram that ends badly. `passes`: but for words of a key, which are
+    said while they pass, and no list does. `taken`:
     what comes is taken within some cycles, of all but a GAP, which takes one more for each bit of its first word."""
 
     module = submessages
@@ -225,6 +226,11 @@ class SubmessagesSpec(Spec):
         ),
         Bug("kept", "with m.If(wrong | i.payload.bad):", "with m.If(wrong):"),
         Bug(
+            "passes",
+            'take("QOS VALUE")\n                with m.If(came):',
+            'take("QOS VALUE")\n                with m.If(1):',
+        ),
+        Bug(
             "taken",
             'with m.If(~meta.known):\n                        m.next = "FOUND"',
             'with m.If(~meta.known):\n                        m.next = "FIND"',
@@ -240,17 +246,16 @@ class SubmessagesSpec(Spec):
         self.check(m, "user")
         lists = self.check(m, "discovery")
         i, user = dut.i.stream, dut.user.stream
-        peers = PeerMap(1, 1)
         ended = i.valid & i.payload.end
         good = user.valid & user.payload.end & ~user.payload.bad
         word = user.valid & ~user.payload.end
-        scratch = dut.write.addr[4:] == peers._scratch >> 4
         m.d.comb += [
             Assert(~good | (ended & ~i.payload.bad), "user"),
             Assert(~word | (i.valid & ~i.payload.end & (user.payload.data == i.payload.data)), "word"),
             Assert(~rules.ended | ~(lists.within | dut.discovery.stream.valid), "over"),
-            Assert(~dut.write.en | scratch | (ended & ~i.payload.bad), "kept"),
-            Cover(dut.write.en & ~scratch, "written"),
+            Assert(~dut.write.en | (ended & ~i.payload.bad), "kept"),
+            Assert(~dut.keep.en | (i.valid & i.ready & ~ended & ~lists.within), "passes"),
+            Cover(dut.write.en, "written"),
         ]
         free = user.ready & dut.discovery.stream.ready & (dut.i.meta.id != GAP)
         waits(m, i, 18, free, "taken")
@@ -260,7 +265,8 @@ class ParametersSpec(Spec):
     """`done`: a list is read only at a good end, and if it is none or ended with its sentinel, behind whole values. `stays`:
     what is read of it is steady until it may proceed. `told`: of what ended well something is said. `kept`: nothing but
     the scratch area is written. `quiet`: who deals with a list that is done has the memories for itself, and what was
-    written of it is there. `taken`: what comes is taken within some cycles, but for the end of what is read."""
+    written of it is there. `keeps`: what passed before is kept.
+    `taken`: what comes is taken within some cycles, but for the end of what is read."""
 
     module = parameters
     quick, deep = 20, 26
@@ -276,9 +282,10 @@ class ParametersSpec(Spec):
         Bug("told", "self.drop_malformed.eq(ended & ~i.payload.bad)", "self.drop_malformed.eq(0)"),
         Bug(
             "kept",
-            "target = self._peers.scratch(",
-            "target = self._peers.participant(Signal(1), ",
+            "self._peers.scratch(v.target)",
+            "self._peers.participant(Signal(1), v.target)",
         ),
+        Bug("keeps", "v.target.eq(self.keep.word)", "v.target.eq(self.keep.word | 1)"),
         Bug(
             "quiet",
             "[self.done.eq(~i.payload.bad), ",
@@ -321,10 +328,15 @@ class ParametersSpec(Spec):
         good = i.valid & i.payload.end & ~i.payload.bad
         held, read, same = Signal(), Signal.like(dut.read.as_value()), Signal.like(dut.same)
         m.d.sync += [held.eq(dut.done & ~dut.proceed), read.eq(dut.read), same.eq(dut.same)]
-        wrote, addresses = Signal(), Cat(dut.peers.addr, dut.own.addr, dut.write.addr, dut.write.data)
-        m.d.sync += wrote.eq(dut.write.en)
+        wrote, place = Signal(), Signal(4)
+        writes = Cat(dut.peers.addr, dut.own.addr, dut.write.addr, dut.write.data, dut.write.en)
+        kept = Cat(dut.keep.en, Signal(2, name="kept"))  # now, and before
+        m.d.sync += [wrote.eq(dut.write.en), kept[1:].eq(kept), place.eq(dut.keep.word)]
         m.d.comb += [
-            Assert(((i.valid | rules.within) & ~dut.done) | ~Cat(addresses, dut.write.en).any(), "quiet"),
+            Assume(~kept[0] | ~(i.valid | rules.within), "kept before"),
+            Assume(~kept[1:].any() | ~i.valid, "kept before"),
+            Assert(((i.valid | rules.within) & ~dut.done) | kept[1] | ~writes.any(), "quiet"),
+            Assert(~kept[1] | (dut.write.en & (dut.write.addr == PeerMap(1, 1).scratch(place))), "keeps"),
             Assert(~dut.done | ~wrote, "quiet"),
             Assert(~dut.done | (good & ((expected == beginning) | (expected == rest))), "done"),
             Assert(~held | (dut.done & (dut.read.as_value() == read) & (dut.same == same)), "stays"),

@@ -104,10 +104,10 @@ class Node:
         return value
 
     def participant(self, slot: int) -> list[int]:
-        """Its words; of those with ports, nothing but these."""
+        """Its prefix, addresses and ports, and nothing but these in their words, its lease, and what is left of it."""
         at = self.peers._participants + 16 * slot
         words = [self.word(at + n) for n in range(9)]
-        return [*words[:6], words[6] & 0xFFFF, *words[7:]]
+        return [*words[:3], *words[4:7], words[7] & 0xFFFF, words[3], words[8]]
 
     def builtin(self, slot: int, kind: int) -> list[int]:
         at = self.peers._builtins + 32 * slot + 8 * kind

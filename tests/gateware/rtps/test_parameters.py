@@ -188,10 +188,10 @@ FAR, NEAR, NEAR2 = "192.168.7.7", "10.0.0.5", "10.0.0.6"
 @pytest.mark.parametrize(
     ("kind", "pid", "at", "flag"),
     [
-        (PARTICIPANT, 0x32, 3, "meta"),
-        (PARTICIPANT, 0x31, 5, "user"),
-        (PUBLICATION, 0x2F, 5, "user"),
-        (SUBSCRIPTION, 0x2F, 5, "user"),
+        (PARTICIPANT, 0x32, 4, "meta"),
+        (PARTICIPANT, 0x31, 6, "user"),
+        (PUBLICATION, 0x2F, 6, "user"),
+        (SUBSCRIPTION, 0x2F, 6, "user"),
     ],
 )
 def test_of_locators_the_first_in_our_subnet_is_taken_else_the_first(
@@ -233,14 +233,14 @@ def test_of_locators_the_first_in_our_subnet_is_taken_else_the_first(
 def test_what_is_said_is_read_and_what_is_not_has_its_default(e: str) -> None:
     async def script(r: Reader) -> None:
         heard = await r.hear(hand.payload(e=e), PARTICIPANT)
-        assert (heard.read.guid, heard.read.meta, heard.scratch[7], heard.read.refused) == (0, 0, 100, 0)
+        assert (heard.read.guid, heard.read.meta, heard.scratch[3], heard.read.refused) == (0, 0, 100, 0)
         said = hand.payload(
             hand.parameter(0x50, SENDER + hand.PARTICIPANT, e),
             hand.parameter(2, struct.pack(e + "iI", 7, 1 << 31), e),
             e=e,
         )
         heard = await r.hear(said, PARTICIPANT)
-        assert (heard.read.guid, heard.scratch[7]) == (1, 7)
+        assert (heard.read.guid, heard.scratch[3]) == (1, 7)
         assert heard.scratch[:3] == words(SENDER)
         for kind, reliable in ((PUBLICATION, 1), (SUBSCRIPTION, 0)):
             heard = await r.hear(hand.payload(e=e), kind)

@@ -9,29 +9,28 @@ from amaranth.lib.wiring import In, Out, connect, flipped
 from roslet.gateware.meta import ADDRESSES
 from roslet.gateware.rtps import ports, tables
 from roslet.gateware.rtps.parameters import Parameters
-from roslet.gateware.rtps.ports import DISCOVERY, READ_LATENCY, DueSignature, ReadSignature, WriteSignature
-from roslet.gateware.rtps.scan import find_endpoint, lowest
+from roslet.gateware.rtps.ports import (
+    DISCOVERY,
+    KEEP,
+    READ_LATENCY,
+    DueSignature,
+    ReadSignature,
+    WriteSignature,
+)
+from roslet.gateware.rtps.scan import find_endpoint
 from roslet.gateware.rtps.tables import MAX_HISTORY, OwnMap, PeerMap
 from roslet.gateware.words import MessageSignature
 from roslet.wire.rtps.qos import TRANSIENT_LOCAL, VOLATILE
-
-
-class _Room:
-    """Of bits, a cycle after they have changed: `full`, none is low; `free`, which is the lowest one that is."""
-
-    def __init__(self, m: Module, taken: Value) -> None:
-        self.full, self.free = Signal(), Signal(range(len(taken)))
-        m.d.sync += [self.full.eq(taken.all()), self.free.eq(lowest(~taken))]
 
 
 class Discovery(wiring.Component):
     """The table of participants, and that of their endpoints that match ours.
 
     Ports: `i`, parameter lists (`Submessages`); `alive` and `matched`, a bit for each participant and user proxy there is;
-    `peers`, `own`, read ports, and `write`; `addresses`, `group_port`, `domain`, ours; `heard` with `heard_slot`, a sign of
-    life, for a cycle in which no list is done; `tick`, high for a cycle each second; `hold` and `idle`, of the walker, which
-    waits while leases are looked at; `due`, something must be sent for a proxy; `greet` with `greet_slot`, this participant
-    must hear of us, as it is new.
+    `peers`, `own`, read ports, and `write`; `keep`, as `Parameters` has it; `addresses`, `group_port`, `domain`, ours;
+    `heard` with `heard_slot`, a sign of life, for a cycle in which no list is done; `tick`, high for a cycle each second;
+    `hold` and `idle`, of the walker, which waits while leases are looked at; `due`, something must be sent for a proxy;
+    `greet` with `greet_slot`, this participant must hear of us, as it is new.
 
     - A participant that announces itself has the first free slot, with proxies of its discovery endpoints, from which all
       is wanted and to which all is sent. Its next announcements, in other datagrams, move it. It goes, and its endpoints
@@ -56,6 +55,7 @@ class Discovery(wiring.Component):
                 "peers": Out(ReadSignature(peers.address_bits)),
                 "own": Out(ReadSignature(own.address_bits)),
                 "write": Out(WriteSignature(peers.address_bits)),
+                "keep": In(KEEP),
                 "addresses": In(ADDRESSES),
                 "group_port": In(16),
                 "domain": In(8),
@@ -80,7 +80,6 @@ class Discovery(wiring.Component):
         is_participant = meta.kind == ports.PARTICIPANTS
 
         # Who comes and goes, and gives a sign of life, or is silent again
-        self._place = Signal(range(peers.endpoints))
         self._joins, self._parts, self._comes, self._goes, silent = (Signal() for _ in range(5))
         heard, who = Signal(peers.participants), Signal(peers.slot_bits)
         # Whom it is about
@@ -101,19 +100,19 @@ class Discovery(wiring.Component):
         m.d.sync += [step.eq(step + 1), addressed.eq(step), before.eq(addressed)]
         with m.If(~counts):
             m.d.sync += step.eq(0)
-        # Where somebody new may go; neither changes while a list is dealt with, until it has been looked at
-        self._slots, self._places = _Room(m, self.alive), _Room(m, self.matched)
         with m.If(self.tick):
             m.d.sync += ticked.eq(1)
-        m.d.comb += who.eq(Mux(self.heard, self.heard_slot, slot))
+        its = slot[: len(who)]
+        m.d.comb += who.eq(Mux(self.heard, self.heard_slot, its))
         for bits, number, rise, fall in (
-            (self.matched, self._place, self._joins, self._parts),
-            (self.alive, slot, self._comes, self._goes),
+            (self.matched, self._endpoint, self._joins, self._parts),
+            (self.alive, its, self._comes, self._goes),
             (heard, who, self.heard | self._comes, silent),
         ):
             with m.If(rise | fall):
                 m.d.sync += bits.bit_select(number, 1).eq(rise)
         m.d.comb += [
+            parameters.keep.eq(self.keep),
             parameters.addresses.eq(self.addresses),
             parameters.group_port.eq(self.group_port),
             parameters.domain.eq(self.domain),
@@ -121,7 +120,6 @@ class Discovery(wiring.Component):
             parameters.own.data.eq(self.own.data),
             parameters.peers.data.eq(self.peers.data),
             self.greet_slot.eq(slot),
-            self._place.eq(self._endpoint),
         ]
         # Our own use of the memories, by turns with that of the parameters
         self._address, self._own_address = Signal(peers.address_bits), Signal(self._own.address_bits)
@@ -151,7 +149,6 @@ class Discovery(wiring.Component):
             with m.State("KEY"):
                 m.next = "ENTITY"
             with m.State("ENTITY"):
-                m.d.sync += self._endpoint.eq(0)
                 m.next = "SCAN"
                 m.d.sync += self._entity.eq(self.peers.data)
                 with m.If(~read.guid & ~(meta.gone & meta.has_key)):
@@ -178,7 +175,7 @@ class Discovery(wiring.Component):
                 with m.If(slot == peers.participants):
                     m.d.sync += sweeping.eq(0)
                     m.next = "IDLE"
-                with m.Elif(~self.alive.bit_select(slot, 1)):
+                with m.Elif(~self.alive.bit_select(slot[: len(who)], 1)):
                     m.d.sync += slot.eq(slot + 1)
                 with m.Else():
                     m.next = "ADDRESSED"
@@ -187,56 +184,55 @@ class Discovery(wiring.Component):
                 m.next = "LEASE"
             with m.State("LEASE"):
                 m.next = "LEFT"
-                with m.If(heard.bit_select(slot, 1)):
+                lively = heard.bit_select(slot[: len(who)], 1)
+                self._write(m, peers.participant(slot, tables.LEFT), self._passes, when=lively)
+                with m.If(lively):
                     m.d.comb += silent.eq(1)
                     m.d.sync += slot.eq(slot + 1)
-                    self._write(m, peers.participant(slot, tables.LEFT), self._passes)
                     m.next = "SWEEP"
             with m.State("LEFT"):
                 m.next = "REMOVE"
-                with m.If(~self.peers.data[tables.LEASE_BITS]):  # it was not 0 before
-                    self._write(m, peers.participant(slot, tables.LEFT), self._lessens)
+                some = ~self.peers.data[tables.LEASE_BITS]  # it was not 0 before
+                self._write(m, peers.participant(slot, tables.LEFT), self._passes, self._less, when=some)
+                with m.If(some):
                     m.d.sync += slot.eq(slot + 1)
                     m.next = "SWEEP"
             with m.State("REMOVE"):  # the participant, and each of its endpoints
                 m.d.comb += [counts.eq(1), self._address.eq(peers.endpoint(step, tables.INFO))]
                 its = self.peers.data[tables.INFO_SLOT : tables.INFO_SLOT + len(slot)] == slot
-                m.d.comb += [
-                    self._goes.eq(1),
-                    self._place.eq(before),
-                    self._parts.eq((step >= READ_LATENCY) & its),
-                ]
+                m.d.comb += self._goes.eq(1)
+                with m.If(step >= READ_LATENCY):
+                    m.d.comb += self._parts.eq(its)
+                    m.d.sync += self._endpoint.eq(self._endpoint + 1)
                 with m.If(step == peers.endpoints + READ_LATENCY - 1):
                     m.next = "PROCEED"
                     with m.If(sweeping):
                         m.d.sync += slot.eq(slot + 1)
                         m.next = "SWEEP"
+        starts = ("IDLE", "SWEEP", "MATCH")
+        with m.If(Cat(fsm.ongoing(state) for state in starts).any() & ~self._found):
+            m.d.sync += self._endpoint.eq(0)
         return m
 
     def _writing(self, m: Module) -> None:
         """What is written, in the cycle after: registers of which those are zero that are not meant."""
-        given, kept = self.peers.data, self._parameters.write
-        # What was read, with the group beside a port; a second less than was read; what is known of an endpoint; and what
-        # is computed: of our own word nothing, 1, all before that is kept, or everything more.
+        kept = self._parameters.write
+        # A word that was read, with what is added to it: 1; one less; everything; or that makes it a number before all that
+        # is kept. A word of our own. What is known of an endpoint, or stands beside a port.
         self._target = Signal(len(self.write.addr))
-        self._writes, self._passes, self._lessens, self._computes = (Signal() for _ in range(4))
-        self._beside, self._in_group = Signal(18), Signal()
-        self._one, self._before_all, self._everything = (Signal() for _ in range(3))
-        one, before_all, everything = self._one, self._before_all, self._everything
+        self._writes, self._passes, self._copies = (Signal() for _ in range(3))
+        self._one, self._less, self._everything, self._before_all = (Signal() for _ in range(4))
+        self._beside = Signal(18)
         middle = MAX_HISTORY.bit_length() - 1
-        more = Cat(
-            one | everything,
-            everything.replicate(middle - 1),
-            (before_all | everything).replicate(31 - middle),
-            before_all,
-        )
+        low, high = self._less | self._everything, self._less | self._before_all
+        more = Cat(low | self._one, low.replicate(middle - 1), (low | high).replicate(31 - middle), high)
         en, target, beside = Signal(), Signal.like(self._target), Signal.like(self._beside)
-        passed, lessened, computed = Signal(32), Signal(tables.LEASE_BITS + 1), Signal(32)
-        m.d.sync += [en.eq(self._writes), target.eq(self._target), beside.eq(self._beside)]
+        passed, copied = Signal(32), Signal(32)
+        m.d.sync += [en.eq(self._writes), beside.eq(self._beside)]
         for register, value, meant in (
-            (passed, given | self._in_group << tables.PORT_GROUP, self._passes),
-            (lessened, given[: tables.LEASE_BITS + 1] - 1, self._lessens),
-            (computed, self.own.data + more, self._computes),
+            (target, self._target, self._writes),
+            (passed, self.peers.data + more, self._passes),
+            (copied, self.own.data, self._copies),
         ):
             m.d.sync += register.eq(value)
             with m.If(~meant):
@@ -244,12 +240,12 @@ class Discovery(wiring.Component):
         m.d.comb += [
             self.write.en.eq(en | kept.en),
             self.write.addr.eq(target | kept.addr),
-            self.write.data.eq((passed | computed | kept.data) | (lessened | beside)),
+            self.write.data.eq(passed | copied | kept.data | beside),
         ]
 
-    def _write(self, m: Module, target: Value, *what: Signal) -> None:
+    def _write(self, m: Module, target: Value, *what: Signal, when: Value | int = 1) -> None:
         """A word, of what is `beside` and these."""
-        m.d.comb += [self._writes.eq(1), self._target.eq(target), *(one.eq(1) for one in what)]
+        m.d.comb += [self._target.eq(target), *(one.eq(when) for one in (self._writes, *what))]
 
     def _participant(self, m: Module, arrived: Value) -> None:
         """An announcement, or a farewell."""
@@ -265,27 +261,31 @@ class Discovery(wiring.Component):
                 m.d.comb += self.drop_refused.eq(1)
             with m.Elif(~read.guid | ~read.meta):
                 m.d.comb += self.drop_incomplete.eq(1)
-            with m.Elif(~meta.known & self._slots.full):
+            with m.Elif(meta.known):
+                m.next = "COPY"
+            with m.Elif(~arrived):  # else most likely it says so twice
+                m.d.sync += slot.eq(0)
+                m.next = "SLOT"
+        with m.State("SLOT"):  # the first that is free
+            with m.If(slot == peers.participants):
                 m.d.comb += self.drop_full.eq(1)
-            with m.Elif(~meta.known & arrived):
-                pass  # most likely it says so twice
+                m.next = "PROCEED"
+            with m.Elif(self.alive.bit_select(slot[: peers.slot_bits], 1)):
+                m.d.sync += slot.eq(slot + 1)
             with m.Else():
                 m.next = "COPY"
-                with m.If(~meta.known):
-                    m.d.sync += slot.eq(self._slots.free)
         with m.State("COPY"):  # the scratch area, behind what is read
             source = Signal(4)
             m.d.comb += [counts.eq(1), source.eq(step)]
-            with m.If(~read.user & ((step == tables.USER_IP) | (step == tables.USER_PORT))):
-                m.d.comb += source.eq(step - tables.USER_IP + tables.META_IP)
+            with m.If(~read.user & (step[1:3] == tables.USER_IP >> 1)):
+                m.d.comb += source.eq(Cat(step[0], C(tables.META_IP >> 1)))
             m.d.comb += self._address.eq(peers.scratch(source))
             near, listens = self._parameters.near, self._parameters.listens
-            with m.If(step >= READ_LATENCY):
-                self._write(m, peers.participant(slot, before), self._passes)
+            self._write(m, peers.participant(slot, before), self._passes, when=step >= READ_LATENCY)
             with m.If(before == tables.USER_PORT):
                 m.d.comb += self._beside[tables.PORT_GROUP :].eq(Cat(near & listens, near))
             # As it was heard, the next sweep writes what is left.
-            with m.If(step == tables.LEASE + READ_LATENCY):
+            with m.If(step == tables.USER_PORT + READ_LATENCY):
                 m.d.comb += [counts.eq(0), self._comes.eq(1)]
                 m.next = "PROCEED"
                 with m.If(fresh):
@@ -295,12 +295,13 @@ class Discovery(wiring.Component):
             of_writer, word = before[3], Cat(before[:2], C(1, 1))
             m.d.comb += [
                 counts.eq(1),
-                self._own_address.eq(self._own.own(tables.ZERO)),
+                self._address.eq(peers.scratch(tables.SCRATCH_ZERO)),
                 self._one.eq(Mux(of_writer, word == tables.NEXT_LO, word == tables.ASK_FROM)),
                 self._everything.eq(~of_writer & (word == tables.ASK_TO)),
             ]
-            with m.If(step >= READ_LATENCY):
-                self._write(m, peers.builtin(slot, before[2:4], word), self._computes)
+            there = step >= READ_LATENCY
+            self._write(m, peers.builtin(slot, before[2:4], word), self._passes, when=there)
+            with m.If(there):
                 m.d.comb += [
                     self.due.en.eq(before[:2] == 3),
                     self.due.proxy.eq(Cat(before[2:4], slot)[: len(self.due.proxy) - 1]),
@@ -367,44 +368,52 @@ class Discovery(wiring.Component):
                 m.d.comb += self.drop_incomplete.eq(1)
             with m.Elif(same.any()):
                 m.next = "MATCH"
+        # Looked at in both states before it is needed: a cycle in which it is written gives what there was before.
+        last = own.writer(local, tables.WRITER_LAST)
         with m.State("MATCH"):
+            m.d.comb += self._own_address.eq(last)
             m.next = "PROCEED"
             with m.If(~agreed):
                 m.d.comb += [self.drop_qos.eq(1), self._parts.eq(found)]
-            with m.Elif(~found & self._places.full):
-                m.d.comb += self.drop_full.eq(1)
-            with m.Else():
+            with m.Elif(found):
                 m.next = "PROXY"
-                with m.If(~found):
-                    m.d.sync += endpoint.eq(self._places.free)
-        with m.State("PROXY"):  # behind what is read
+            with m.Else():
+                m.next = "PLACE"
+        with m.State("PLACE"):  # the first that is free
+            m.d.comb += self._own_address.eq(last)
+            m.next = "PROXY"
+            with m.If(self.matched.bit_select(endpoint, 1)):
+                m.d.sync += endpoint.eq(endpoint + 1)
+                m.next = "PLACE"
+                with m.If(endpoint == peers.endpoints - 1):
+                    m.d.comb += self.drop_full.eq(1)
+                    m.next = "PROCEED"
+        with m.State("PROXY"):  # behind what is read; our writer's last comes by way of the scratch area
             # Before all that is kept, where it gets what was before it: numbers are compared by their difference. Of a
             # writer the first that is wanted is 1, or any.
-            last = own.writer(local, tables.WRITER_LAST)
-            m.d.comb += [
-                self._counts.eq(1),
-                self._own_address.eq(Mux(is_writer, own.own(tables.ZERO), last)),
-            ]
+            m.d.comb += self._counts.eq(1)
             with m.If(is_writer):
-                m.d.comb += self._one.eq(transient & (before[:2] == tables.NEXT_LO & 3))
-            with m.Elif(before[:2] != tables.ASK_TO & 3):
+                m.d.comb += self._one.eq(transient & (before[:3] == tables.NEXT_LO))
+            with m.Elif(before[2] & (before[:2] != tables.ASK_TO & 3)):
                 m.d.comb += [self._one.eq(~transient), self._before_all.eq(transient)]
-            where = Mux(step[0], tables.USER_PORT, tables.USER_IP)  # for IP, 2, and PORT, 3
+            where = Cat(step[0], C(tables.USER_IP >> 1))  # for IP, 2, and PORT, 3
             its = Mux(read.user, peers.scratch(where), peers.participant(slot, where))
-            m.d.comb += self._address.eq(Mux(step[1], its, peers.scratch(tables.SCRATCH_ENTITY)))
+            kept = Mux(step[2], tables.SCRATCH_LAST, tables.SCRATCH_ENTITY)
+            m.d.comb += self._address.eq(Mux(step[1] & ~step[2], its, peers.scratch(kept)))
             near = Mux(read.user, self._parameters.near, self.peers.data[tables.PORT_NEAR])
             group = self._parameters.listens & near
-            with m.If(step >= READ_LATENCY):
-                self._write(m, peers.endpoint(endpoint, before[:3]))
-                m.d.comb += self._computes.eq(before[2])
-                with m.If(before[:3] == tables.INFO):
-                    of_ours = Cat(local, C(0, 8 - len(local)), is_writer, reliable)
-                    m.d.comb += self._beside.eq(Cat(slot, C(0, 8 - len(slot)), of_ours))
-                with m.Elif(~before[2]):
-                    m.d.comb += [
-                        self._passes.eq(1),
-                        self._in_group.eq((before[0] == tables.PORT & 1) & group),
-                    ]
+            there = step >= READ_LATENCY
+            self._write(m, peers.endpoint(endpoint, before[:3]), when=there)
+            with m.If(step == 1):
+                self._write(m, peers.scratch(tables.SCRATCH_LAST))
+                m.d.comb += self._copies.eq(~is_writer)
+            with m.If(there & (before[:3] == tables.INFO)):
+                of_ours = Cat(local, C(0, 8 - len(local)), is_writer, reliable)
+                m.d.comb += self._beside.eq(Cat(slot, C(0, 8 - len(slot)), of_ours))
+            with m.Elif(there):
+                m.d.comb += self._passes.eq(1)
+                with m.If(before[:3] == tables.PORT):
+                    m.d.comb += self._beside[tables.PORT_GROUP].eq(group)
             with m.If((step == tables.PORT + READ_LATENCY) & found):
                 m.next = "PROCEED"  # it has only moved
             with m.If(step == tables.PROXY - 1 + READ_LATENCY):

@@ -14,7 +14,7 @@ from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.meta import ADDRESSES
 from roslet.gateware.rtps import ports, tables
-from roslet.gateware.rtps.ports import DISCOVERY, READ_LATENCY, ReadSignature, WriteSignature
+from roslet.gateware.rtps.ports import DISCOVERY, KEEP, READ_LATENCY, ReadSignature, WriteSignature
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 from roslet.gateware.words import MessageSignature
 from roslet.wire.rtps import locator, qos
@@ -132,7 +132,7 @@ class _Passing:
         self.near = Signal(2)  # what was taken, of discovery and of the user's, is in our subnet
         # What is kept, and where
         self.keeps_word, self.keeps_number, self.keeps_high = Signal(), Signal(), Signal()
-        self.target = Signal(peers.address_bits)
+        self.target = Signal(4)
 
     def octets(self, m: Module, word: Value) -> None:
         """The octets of a word pass, that with the highest bits of a number first."""
@@ -155,8 +155,9 @@ class _Passing:
 class Parameters(wiring.Component):
     """Reads one list at a time.
 
-    Ports: `i`, lists with their encapsulation header; `peers` and `own`, read ports; `write`; `addresses`, `group_port`
-    (where all are announced to), `domain`, ours: that is not looked at where `judge_domain` is false.
+    Ports: `i`, lists with their encapsulation header; `peers` and `own`, read ports; `write`; `keep`, the word at `i` is
+    kept though it is of no list and not valid, at least three cycles before the next list; `addresses`, `group_port` (where
+    all are announced to), `domain`, ours: that is not looked at where `judge_domain` is false.
     `read` is what the list has said, and `same` a bit for each of our endpoints of the other kind: it has this topic and
     this type. `near`: where it takes the user's messages is in our subnet; `listens`: it takes them by the group of all
     participants as well, at the port for these. All are steady while `done` is high: the list's good end is at `i`, and
@@ -182,6 +183,7 @@ class Parameters(wiring.Component):
                 "peers": Out(ReadSignature(peers.address_bits)),
                 "own": Out(ReadSignature(own.address_bits)),
                 "write": Out(WriteSignature(peers.address_bits)),
+                "keep": In(KEEP),
                 "addresses": In(ADDRESSES),
                 "group_port": In(16),
                 "domain": In(8),
@@ -229,7 +231,7 @@ class Parameters(wiring.Component):
                     m.next = "ENCAPSULATION"
             with m.State("ENCAPSULATION"):
                 m.d.comb += i.ready.eq(1)
-                m.d.comb += [v.keeps_number.eq(1), v.target.eq(self._peers.scratch(tables.LEASE))]
+                m.d.comb += v.keeps_number.eq(1)  # a lease, as nothing else has come
                 m.d.sync += v.little.eq(word[8])
                 m.next = "PARAMETER"
                 with m.If((word[:8] != 0) | (word[9:16] != PL_CDR >> 1)):
@@ -292,14 +294,28 @@ class Parameters(wiring.Component):
         with m.If(fsm.ongoing("IDLE")):
             default = meta.kind == ports.PUBLICATIONS  # writers are reliable if they say nothing
             m.d.sync += [read.eq(0), read.reliable.eq(default), self.same.eq(-1)]
-            m.d.sync += [v.near.eq(0), self.listens.eq(0), v.number.eq(DEFAULT_LEASE // 1_000_000_000)]
+            m.d.sync += [
+                v.near.eq(0),
+                self.listens.eq(0),
+                v.act.eq(0),
+                v.number.eq(DEFAULT_LEASE // 1_000_000_000),
+            ]
         kept_word, kept_number = Signal(32), Signal(tables.LEASE_BITS)
         m.d.sync += [
             self.write.en.eq(v.keeps_word | v.keeps_number),
-            self.write.addr.eq(v.target),
+            self.write.addr.eq(self._peers.scratch(v.target)),
             kept_word.eq(word),
             kept_number.eq(Cat(v.number, v.keeps_high)),
         ]
+        with m.If(~(v.keeps_word | v.keeps_number)):
+            m.d.sync += self.write.addr.eq(0)
+        m.d.comb += v.target.eq(tables.LEASE)
+        with m.If(v.act.guid):
+            m.d.comb += v.target.eq(v.at[:2] | (v.at[:2] == 3).replicate(2) << 2)
+        with m.If(v.act.locator):
+            m.d.comb += v.target.eq(Cat(v.last, v.act.user, 1))
+        with m.If(self.keep.en):
+            m.d.comb += [v.keeps_word.eq(1), v.target.eq(self.keep.word)]
         for keeps, kept in ((v.keeps_word, kept_word), (v.keeps_number, kept_number)):
             with m.If(~keeps):
                 m.d.sync += kept.eq(0)
@@ -332,19 +348,14 @@ class Parameters(wiring.Component):
             with m.If(act.durability):
                 m.d.sync += read.durability.eq(number[:2])
         with m.If(act.lease & v.first & ~v.passes):
-            m.d.comb += [
-                v.keeps_number.eq(1),
-                v.keeps_high.eq(v.high),
-                v.target.eq(self._peers.scratch(tables.LEASE)),
-            ]
+            m.d.comb += [v.keeps_number.eq(1), v.keeps_high.eq(v.high)]
 
     def _guid(self, m: Module, v: _Passing) -> None:
         """Its prefix must be its sender's."""
         with m.If(v.act.guid & (v.at[2:] == 0)):
             m.d.comb += self.peers.addr.eq(self._peers.scratch((tables.SCRATCH_SOURCE + v.at[:2])[:4]))
             is_entity = v.at[:2] == 3
-            target = self._peers.scratch(v.at[:2] | Mux(is_entity, tables.SCRATCH_ENTITY, 0))
-            m.d.comb += [v.keeps_word.eq(1), v.target.eq(target)]
+            m.d.comb += v.keeps_word.eq(1)
             with m.If(is_entity):
                 m.d.sync += self.read.guid.eq(1)
             with m.Elif(v.last & (self.peers.data != self.i.stream.payload.data)):
@@ -366,15 +377,7 @@ class Parameters(wiring.Component):
             with m.If(act.group & (word == GROUP)):
                 m.d.sync += self.listens.eq(1)
             with m.If(act.locator & wanted):
-                ip, port = (
-                    Mux(act.user, *both)
-                    for both in ((tables.USER_IP, tables.META_IP), (tables.USER_PORT, tables.META_PORT))
-                )
-                m.d.comb += [
-                    v.keeps_word.eq(~v.last),
-                    v.keeps_number.eq(v.last),
-                    v.target.eq(self._peers.scratch(Mux(v.last, port, ip))),
-                ]
+                m.d.comb += [v.keeps_word.eq(~v.last), v.keeps_number.eq(v.last)]
                 with m.If(v.last):
                     m.d.sync += near.eq(is_near)
                     with m.If(act.user):

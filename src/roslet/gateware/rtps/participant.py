@@ -15,7 +15,7 @@ from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.composer import Composer
 from roslet.gateware.rtps.discovery import Discovery
 from roslet.gateware.rtps.outbox import Outbox
-from roslet.gateware.rtps.ports import DISCOVERY, SUBMESSAGE, USER, WriteSignature
+from roslet.gateware.rtps.ports import DISCOVERY, KEEP, SUBMESSAGE, USER, WriteSignature
 from roslet.gateware.rtps.queue import DatagramQueue
 from roslet.gateware.rtps.rom import Rom
 from roslet.gateware.rtps.sender import Sender
@@ -231,16 +231,22 @@ class Participant(wiring.Component):
                 m.d.comb += [user.data.eq(word) for user in users]
                 given[side, name] = read.addr, word
         write, ours = peers.write_port(), own.write_port()
-        # In the cycle after, as what is written takes long; what comes from outside does while this is held in reset, and
-        # the sender's is zero
-        receiving, outside = (walker.source, submessages.write, discovery.write), self.own
-        for name in ("en", "addr", "data"):
-            received = _either(getattr(one, name) for one in receiving)
-            sent = getattr(outside, name) | getattr(sender.write, name)
-            for port, value in ((write, received), (ours, sent)):
-                later = Signal.like(getattr(port, name), reset_less=True)
-                m.d.comb += getattr(port, name).eq(later)
-                m.d.sync += later.eq(value)
+        # What is kept of a word that passes is written where it is two registers later: while the walker, or `submessages`,
+        # is where it keeps one, nothing is valid in those behind it.
+        in_bodies = Signal(KEEP)
+        m.d.sync += [
+            in_bodies.eq(walker.keep),
+            discovery.keep.eq(in_bodies.as_value() | Value.cast(submessages.keep)),
+        ]
+        # In the cycle after, as what is written takes long; what discovery writes has waited, and what comes from outside
+        # does so while all others are held in reset: these are zero in the meantime.
+        for port, block, other in ((write, submessages, discovery.write), (ours, sender, self.own)):
+            for name in ("en", "addr", "data"):
+                later = Signal.like(getattr(port, name))
+                m.d.sync += later.eq(getattr(block.write, name))
+                with m.If(~block.write.en):
+                    m.d.sync += later.eq(0)
+                m.d.comb += getattr(port, name).eq(later | getattr(other, name))
         # Block RAM gives anything of a word that is being written. Each side may read one of the other's: of peers it gets
         # the new. Of ours, where who receives looks at the same word for some cycles, it keeps what it had.
         for port, side, name in ((write, "sending", "peers"), (ours, "receiving", "own")):

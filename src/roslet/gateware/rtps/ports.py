@@ -36,6 +36,9 @@ def exchanged(word: Value) -> Value:
     return Cat(word.word_select(n, 8) for n in reversed(range(4)))
 
 
+KEEP = data.StructLayout({"en": 1, "word": 4})
+"""The word that passes in this cycle is kept, as that word of the scratch area."""
+
 USER = data.StructLayout({"reader": 8, "representation": 16})
 """Beside a message of the user's: the number of our reader, and the representation identifier, RTPS 2.3, 10.5, as a
 number."""

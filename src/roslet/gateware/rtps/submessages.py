@@ -13,6 +13,7 @@ from roslet.gateware.compare import below
 from roslet.gateware.rtps import ports, tables
 from roslet.gateware.rtps.ports import (
     DISCOVERY,
+    KEEP,
     SUBMESSAGE,
     USER,
     DueSignature,
@@ -54,7 +55,8 @@ class Submessages(wiring.Component):
     Ports: `i`, bodies of submessages (`Walker`); `user`, messages for our readers; `discovery`, parameter lists of
     participants and endpoints; `room`, a bit for each of our readers: whoever takes its messages can take a whole one now,
     and waits with it for no longer than it takes to store; `over`, no datagram is passing; `alive`, `matched`, the
-    participants and user proxies that there are; `peers`, a read port, and `write`; `due`, something must be
+    participants and user proxies that there are; `peers`, a read port, and `write`, whose data mean nothing while `en` is
+    low; `keep`, the word at `i`, and at `discovery`, is of the key of something that is no more; `due`, something must be
     sent for a proxy.
 
     A message's words go out before it is known that its datagram is good, and its end says so. What is kept is changed
@@ -92,6 +94,7 @@ class Submessages(wiring.Component):
                 "matched": In(peers.endpoints),
                 "peers": Out(ReadSignature(peers.address_bits)),
                 "write": Out(WriteSignature(peers.address_bits)),
+                "keep": Out(KEEP),
                 "due": Out(DueSignature(peers.proxy_bits)),
                 **{f"drop_{name}": Out(1) for name in ("unmatched", "old", "early", "busy", "invalid")},
             }
@@ -179,8 +182,9 @@ class Submessages(wiring.Component):
         reading, putting = Signal(), Signal()
         scanned = Signal.like(self.peers.addr)
         m.d.comb += self.peers.addr.eq(Mux(reading, at, scanned))
+        m.d.comb += self.write.data.eq(total)
         with m.If(putting):
-            m.d.comb += [self.write.en.eq(1), self.write.addr.eq(at), self.write.data.eq(total)]
+            m.d.comb += [self.write.en.eq(1), self.write.addr.eq(at)]
 
         def take(state: str) -> None:
             """Take a word and go on; a body that ends here is dropped."""
@@ -493,8 +497,4 @@ class Submessages(wiring.Component):
                     with m.If(is_status):  # four octets, whose last has the flags, in whatever byte order
                         m.d.sync += gone.eq((word[24:32] & (STATUS_DISPOSED | STATUS_UNREGISTERED)).any())
                     with m.If(is_key):
-                        m.d.comb += [
-                            self.write.en.eq(1),
-                            self.write.addr.eq(self._peers.scratch((tables.SCRATCH_KEY + 4 - skip)[:4])),
-                            self.write.data.eq(word),
-                        ]
+                        m.d.comb += [self.keep.en.eq(1), self.keep.word.eq(tables.SCRATCH_KEY + 4 - skip)]

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from amaranth.hdl import Cat, Const, Value
 
 # A participant
-PREFIX, META_IP, META_PORT, USER_IP, USER_PORT, LEASE, LEFT = 0, 3, 4, 5, 6, 7, 8
+PREFIX, LEASE, META_IP, META_PORT, USER_IP, USER_PORT, LEFT = 0, 3, 4, 5, 6, 7, 8
 PARTICIPANT = 16
 
 # A proxy. Of a peer's writer: the next number that is wanted, and the last that there is; of a peer's reader: all before
@@ -34,7 +34,8 @@ PUBLICATIONS_READER, SUBSCRIPTIONS_READER, PUBLICATIONS_WRITER, SUBSCRIPTIONS_WR
 BUILTINS = 4
 
 # Scratch: a participant's words, then those below
-SCRATCH_SOURCE, SCRATCH_KEY, SCRATCH_ENTITY = 9, 12, 15
+SCRATCH_ZERO, SCRATCH_SOURCE, SCRATCH_KEY, SCRATCH_ENTITY = 8, 9, 12, 15
+SCRATCH_LAST = SCRATCH_KEY  # of our writer, where no key is needed
 SCRATCH = 16
 
 # Bits of INFO

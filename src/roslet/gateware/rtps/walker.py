@@ -7,7 +7,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.compare import below
-from roslet.gateware.rtps.ports import READ_LATENCY, SUBMESSAGE, ReadSignature, WriteSignature
+from roslet.gateware.rtps.ports import KEEP, READ_LATENCY, SUBMESSAGE, ReadSignature
 from roslet.gateware.rtps.tables import OWN_PREFIX, PREFIX, SCRATCH_SOURCE, OwnMap, PeerMap
 from roslet.gateware.words import MessageSignature
 from roslet.wire.rtps import header, submessage
@@ -28,9 +28,9 @@ class Walker(wiring.Component):
 
     Ports: `i`, messages; `known` and `good`, the verdict on the one that `i` gives (`DatagramQueue`); `o`, the words of a
     body, never more than its length says, and an end, with what its header says beside it; `alive`, which participants are
-    known; `peers` and `own`, read ports; `source`, writes the sender's GUID prefix into the scratch area; `heard` is high
-    for a cycle when something good came from participant `heard_slot`. `hold` keeps the next message waiting, and `idle` is
-    high while none is taken.
+    known; `peers` and `own`, read ports; `keep`, the word at `i`, and at `o`, is of the sender's GUID prefix; `heard` is
+    high for a cycle when something good came from participant `heard_slot`. `hold` keeps the next message waiting, and
+    `idle` is high while none is taken.
 
     What is given are DATA, HEARTBEAT, ACKNACK and GAP, of messages to all or, by INFO_DST, to us. A good end is given only
     once it is known that the whole datagram is good: who has acted upon it need take nothing back. Where the datagram is
@@ -53,7 +53,7 @@ class Walker(wiring.Component):
                 "alive": In(peers.participants),
                 "peers": Out(ReadSignature(peers.address_bits)),
                 "own": Out(ReadSignature(own.address_bits)),
-                "source": Out(WriteSignature(peers.address_bits)),
+                "keep": Out(KEEP),
                 "heard": Out(1),
                 "heard_slot": Out(8),
                 "hold": In(1),
@@ -239,9 +239,8 @@ class Walker(wiring.Component):
                 m.d.sync += step.eq(step + 1)
                 with m.If(step == 0):
                     m.d.comb += [
-                        self.source.en.eq(1),
-                        self.source.addr.eq(self._peers.scratch((SCRATCH_SOURCE + at)[:4])),
-                        self.source.data.eq(word),
+                        self.keep.en.eq(1),
+                        self.keep.word.eq(SCRATCH_SOURCE + at),
                     ]
                     m.d.sync += is_known.eq(0)
                     with m.If(at == 0):
