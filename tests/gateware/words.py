@@ -161,6 +161,9 @@ class Tables(Elaboratable):
                 if f"hide_{name}" in block.signature.members:
                     with m.If(getattr(block, f"hide_{name}")):
                         m.d.sync += given.eq(0)
+                if f"fill_{name}" in block.signature.members:
+                    with m.If(getattr(block, f"fill_{name}")):
+                        m.d.sync += given.eq(-1)
         write = self.peers_memory.write_port()
         ports = [block.write for block in self._blocks.values() if "write" in block.signature.members]
         m.d.comb += [

@@ -101,7 +101,7 @@ class WalkerSpec(Spec):
     """
 
     module = walker
-    quick, deep = 15, 24
+    quick, deep = 16, 25
     scale = (("_PREFIX_WORDS = 3", "_PREFIX_WORDS = 1"),)
     bugs = (
         Bug("o.steady", "o.valid.eq(i.valid), i.ready.eq(o.ready)", "o.valid.eq(i.valid), i.ready.eq(1)"),
@@ -111,7 +111,7 @@ class WalkerSpec(Spec):
             "o.payload.data.eq(word), o.payload.bad.eq(i.payload.bad | (word == 5)),",
         ),
         Bug("o.meta_steady", "self.o.meta.known.eq(is_known)", "self.o.meta.known.eq(i.valid)"),
-        Bug("length", "left, less = Signal(15), Signal(15)", "left, less = Signal(14), Signal(14)"),
+        Bug("length", "less = Signal(15, init=-1), Signal(15)", "less = Signal(14, init=-1), Signal(14)"),
         Bug("data", "o.payload.data.eq(word),", "o.payload.data.eq(word | 1),"),
         Bug("good", "o.payload.bad.eq(~self.good | missing)", "o.payload.bad.eq(~self.good)"),
         Bug("heard", "~o.payload.bad & is_known", "is_known"),
@@ -122,8 +122,8 @@ class WalkerSpec(Spec):
         ),
         Bug(
             "idle",
-            'reason.eq(~i.payload.bad)\n                        m.next = "START"',
-            "reason.eq(~i.payload.bad)\n                        m.next = state",
+            'with m.If(ended):\n                    m.next = "START"',
+            'with m.If(ended):\n                    m.next = "SKIP"',
         ),
     )
 
@@ -224,11 +224,11 @@ class SubmessagesSpec(Spec):
             "with m.If(~i.payload.end):\n                    m.d.comb += i.ready.eq(self.discovery.stream.ready)",
             "with m.If(1):\n                    m.d.comb += i.ready.eq(self.discovery.stream.ready)",
         ),
-        Bug("kept", "with m.If(wrong | i.payload.bad):", "with m.If(wrong):"),
+        Bug("kept", "with m.If(~found | wrong | i.payload.bad):", "with m.If(~found | wrong):"),
         Bug(
             "passes",
-            'take("QOS VALUE")\n                with m.If(came):',
-            'take("QOS VALUE")\n                with m.If(1):',
+            "with m.If(came):\n                m.d.comb += i.ready.eq(1)",
+            "with m.If(came):\n                m.d.comb += i.ready.eq(~self.keep.en)",
         ),
         Bug(
             "taken",

@@ -13,8 +13,8 @@ from roslet.gateware import toolchain
 _REFINE = "mfs2,-a{L};lutpack,-S,1"
 _MAP = f"strash;dch,-f;if,-D,{{levels}},-F,5,-A,5;{_REFINE.replace('{L}', ',-L,{levels}')}"
 MAPPING = ";".join(("strash;ifraig;scorr;dc2;if,-a", _REFINE.replace("{L}", ""), *[_MAP] * 5))
-"""ABC's script, as Yosys takes it: mapped to the fewest LUTs, whatever comes of the clock, and from there five times again, with
-no more than `levels` LUTs in a row."""
+"""ABC's script, as Yosys takes it: mapped to the fewest LUTs, whatever comes of the clock, and from there five times again,
+with no more than `levels` LUTs in a row."""
 
 
 @dataclass(frozen=True)

@@ -225,7 +225,7 @@ class Participant(wiring.Component):
         for side, group in (("receiving", (walker, submessages, discovery)), ("sending", (sender, composer))):
             for mem, name in ((peers, "peers"), (own, "own")):
                 users = [getattr(block, name) for block in group if name in block.signature.members]
-                read, word = mem.read_port(), Signal(32)
+                read, word = mem.read_port(), Signal(32, init=0xFFFFFFFF if side == "receiving" else 0)
                 m.d.sync += word.eq(read.data)
                 m.d.comb += read.addr.eq(_either(user.addr for user in users))
                 m.d.comb += [user.data.eq(word) for user in users]
@@ -263,6 +263,8 @@ class Participant(wiring.Component):
         for hidden, name in ((composer.hide_peers, "peers"), (composer.hide_own, "own")):
             with m.If(hidden):
                 m.d.sync += given["sending", name][1].eq(0)
+        with m.If(submessages.fill_peers):
+            m.d.sync += given["receiving", "peers"][1].eq(-1)
 
 
 def _either(values: Any) -> Any:

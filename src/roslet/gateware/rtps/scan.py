@@ -21,14 +21,19 @@ def find_endpoint(
     info: Value,
     found: Value,
     then: str,
+    same: Value | None = None,
 ) -> None:
     """The states from SCAN to CHECK of an FSM: find participant `slot`'s writer, or reader, with entity id `key`, among
     those in `matched`, by `address` and `given` of a read port.
 
     In state `then`, `found` says whether it is there; if so, it is `endpoint`, and `info` is its INFO. `found` and
-    `endpoint` must be zero before. Takes one cycle for each endpoint, and three more for each of those in `matched`.
+    `endpoint` must be zero before. Takes one cycle for each endpoint, and three more for each of those in `matched`. `same`,
+    where somebody compares `given` with `key` anyway: whether they were equal a cycle before.
     """
-    same, last = Signal(), endpoint == peers.endpoints - 1
+    last = endpoint == peers.endpoints - 1
+    if same is None:
+        same = Signal()
+        m.d.sync += same.eq(given == key)
     with m.State("SCAN"):
         m.d.comb += address.eq(peers.endpoint(endpoint, tables.KEY))
         with m.If(matched.bit_select(endpoint, 1)):
@@ -41,7 +46,6 @@ def find_endpoint(
         m.d.comb += address.eq(peers.endpoint(endpoint, tables.INFO))
         m.next = "ITS KEY"
     with m.State("ITS KEY"):
-        m.d.sync += same.eq(given == key)
         m.next = "CHECK"
     with m.State("CHECK"):
         its_slot, is_writer = given[tables.INFO_SLOT : tables.INFO_SLOT + 8], given[tables.INFO_WRITER]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.memory import Memory
@@ -11,6 +9,7 @@ from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.compare import below
 from roslet.gateware.rtps import ports, tables
+from roslet.gateware.rtps.inline_qos import skip_inline_qos
 from roslet.gateware.rtps.ports import (
     DISCOVERY,
     KEEP,
@@ -27,9 +26,7 @@ from roslet.gateware.words import MessageSignature
 from roslet.wire.rtps import data as data_submessage
 from roslet.wire.rtps import guid, submessage
 from roslet.wire.rtps.heartbeat import FLAG_F
-from roslet.wire.rtps.inline_qos import STATUS_DISPOSED, STATUS_UNREGISTERED
 from roslet.wire.rtps.number_set import MAX_BITS
-from roslet.wire.rtps.parameter_list import PID_KEY_HASH, PID_SENTINEL, PID_STATUS_INFO
 
 TO_INLINE_QOS = 16
 """octetsToInlineQos of what we know: reader, writer, sequence number."""
@@ -55,9 +52,9 @@ class Submessages(wiring.Component):
     Ports: `i`, bodies of submessages (`Walker`); `user`, messages for our readers; `discovery`, parameter lists of
     participants and endpoints; `room`, a bit for each of our readers: whoever takes its messages can take a whole one now,
     and waits with it for no longer than it takes to store; `over`, no datagram is passing; `alive`, `matched`, the
-    participants and user proxies that there are; `peers`, a read port, and `write`, whose data mean nothing while `en` is
-    low; `keep`, the word at `i`, and at `discovery`, is of the key of something that is no more; `due`, something must be
-    sent for a proxy.
+    participants and user proxies that there are; `peers`, a read port, of which `fill_peers` says a cycle later that ones
+    shall be given for what lies there, and `write`, whose data mean nothing while `en` is low; `keep`, the word at `i`, and
+    at `discovery`, is of the key of something that is no more; `due`, something must be sent for a proxy.
 
     A message's words go out before it is known that its datagram is good, and its end says so. What is kept is changed
     only at a good end:
@@ -69,7 +66,8 @@ class Submessages(wiring.Component):
     - HEARTBEAT: what is before its first is wanted no more; from a volatile writer that has not been heard, nothing that it
       covers is. `due` unless it is final and nothing is missing: an ACKNACK.
     - GAP that begins at or before what is wanted: what is behind the run that begins there is wanted next.
-    - ACKNACK: what is acknowledged and asked for, from the first to the last of its set. `due`: that is sent.
+    - ACKNACK: what is acknowledged and asked for, from the first to the last of its set; of an empty one, from the next one
+      to the first. `due`: that is sent.
 
     Good, and dropped: `drop_unmatched`, from a writer that matches none of our readers, or for another reader; `drop_old`, a
     number that we had or that was skipped; `drop_early`, a later number than the one wanted, from a writer that repeats it;
@@ -93,6 +91,7 @@ class Submessages(wiring.Component):
                 "alive": In(peers.participants),
                 "matched": In(peers.endpoints),
                 "peers": Out(ReadSignature(peers.address_bits)),
+                "fill_peers": Out(1),
                 "write": Out(WriteSignature(peers.address_bits)),
                 "keep": Out(KEEP),
                 "due": Out(DueSignature(peers.proxy_bits)),
@@ -104,7 +103,6 @@ class Submessages(wiring.Component):
         m = Module()
         i, meta = self.i.stream, self.i.meta
         word, little = i.payload.data, meta.flags[0]
-        number = Mux(little, word, exchanged(word))
         came, ended, good, empty = Signal(), Signal(), Signal(), Signal()
         is_data, is_gap, is_heartbeat, is_acknack = (Signal() for _ in range(4))
         m.d.comb += [
@@ -112,10 +110,16 @@ class Submessages(wiring.Component):
             ended.eq(i.valid & i.payload.end),
             good.eq(ended & ~i.payload.bad),
             empty.eq(word == 0),
-            is_data.eq(meta.id == submessage.DATA),
-            is_gap.eq(meta.id == submessage.GAP),
-            is_acknack.eq(meta.id == submessage.ACKNACK),
-            is_heartbeat.eq(~(is_data | is_gap | is_acknack)),
+            # Their lowest bits tell the four kinds apart.
+            *(
+                one.eq(meta.id[:2] == kind & 3)
+                for one, kind in (
+                    (is_data, submessage.DATA),
+                    (is_gap, submessage.GAP),
+                    (is_heartbeat, submessage.HEARTBEAT),
+                    (is_acknack, submessage.ACKNACK),
+                )
+            ),
         ]
 
         # What is known of this submessage
@@ -127,11 +131,11 @@ class Submessages(wiring.Component):
         info = Signal(32)
         local = info[tables.INFO_LOCAL : tables.INFO_LOCAL + 8]
         ours = local[: max(1, (self._readers - 1).bit_length())]
-        skip = Signal(15)  # words, or the bits of a set
+        skip, odd = Signal(14), Signal()  # words, and one more; or the bits of a set
         nothing, wrong = Signal(), Signal()  # of a number, the high word; a number that there is not
         gone, has_key = Signal(), Signal()
-        reason = Signal(2)  # why DATA is not taken
-        unmatched, old, early, busy = range(4)
+        # It has been done, or why not; for none of these it is invalid.
+        done, unmatched, old, early, busy = (Signal() for _ in range(5))
         options = Signal(2)
         reliable = info[tables.INFO_RELIABLE] | builtin
         index = Mux(builtin, Cat(builtin_kind, meta.slot), endpoint)[: self._peers.index_bits]
@@ -143,34 +147,43 @@ class Submessages(wiring.Component):
             m.d.comb += [self.due.en.eq(1), self.due.proxy.eq(more_proxy)]
             m.d.sync += more.eq(0)
 
-        # Its numbers are put aside as they come, the high word first: one, or two. What was asked of `numbers` is in `kept`
-        # two cycles later, as with `peers`: of the first or the `second`, the low word, or the `high` one. Whatever comes is
-        # written at `place`, which is behind the numbers when they are asked for.
-        m.submodules.numbers = numbers = Memory(shape=32, depth=8, init=[], attrs={"ram_style": "block"})
+        # The id of the peer's endpoint is put aside, and in its place numbers as they come, the high word first: one, or
+        # two. What was asked of `numbers` is in `kept` two cycles later, as with `peers`: of the first or the `second`, the
+        # low word, or the `high` one.
+        m.submodules.numbers = numbers = Memory(shape=32, depth=4, init=[], attrs={"ram_style": "block"})
         aside, asked = numbers.write_port(), numbers.read_port()
-        place = Signal(3)
+        of_endpoint = Signal()  # octets, whatever their order
+        number = Mux(little | of_endpoint, word, exchanged(word))
+        place = Signal(2)
         second, high = Signal(), Signal()
         kept, step = Signal(32), Signal(3)
-        m.d.comb += [
-            aside.en.eq(1),
-            aside.addr.eq(place),
-            aside.data.eq(number),
-            asked.addr.eq(Cat(~high, second)),
-        ]
+        m.d.comb += [aside.addr.eq(place), aside.data.eq(number), asked.addr.eq(Cat(~high, second))]
         m.d.sync += kept.eq(asked.data)
         # It is compared with what `peers` gives, the low words first. In JUDGE it is the number that is wanted, or before
-        # it; what is wanted is known; and the low word was compared with LAST, too.
-        difference, equal, begun = Signal(33), Signal(), Signal()
+        # it; what is wanted is known; and the low word was compared with LAST, too. The same subtraction makes what is put,
+        # `kept` + `summand` + `carry`: where `peers` gives ones, it is of -1 - `summand`, and of one more without `carry`.
+        ones = Signal(6)  # that the set of a GAP begins with
+        nothing_asked = Signal()  # by an ACKNACK
+        put_low, put_high = Signal(), Signal()
+        putting, carry = Signal(), Signal()
+        total, borrowed, difference, carried = Signal(32), Signal(), Signal(32), Signal()
+        equal, begun = Signal(), Signal()
         same, behind, known = Signal(), Signal(), Signal()
-        m.d.comb += equal.eq(difference[:32] == 0)
-        m.d.sync += [
-            difference.eq(kept - self.peers.data),
-            same.eq(equal & (same | begun)),
-            behind.eq(difference[32] | (equal & behind & ~begun)),
+        summand = Signal(8)
+        m.d.comb += [
+            carry.eq(
+                (put_low & (is_data | (is_heartbeat & second))) | (put_high & (carried | nothing_asked))
+            ),
+            Cat(Signal(), total, borrowed).eq(
+                Cat(C(0, 1), kept) - Cat(putting & ~carry, self.peers.data & ~Cat(summand, C(0, 24)))
+            ),
+            equal.eq(difference == 0),
         ]
-        # What is written is it and some more; what that carries over is added to the word written next.
-        some, total, carried = Signal(10), Signal(32), Signal()
-        m.d.comb += Cat(total, carried).eq(kept + Cat(some, some[-1].replicate(32 - len(some))))
+        m.d.sync += [
+            Cat(difference, carried).eq(Cat(total, ~borrowed)),
+            same.eq(equal & (same | begun)),
+            behind.eq(~carried | (equal & behind & ~begun)),
+        ]
 
         # A word of the proxy is read or written
         what = Signal(3)
@@ -179,7 +192,7 @@ class Submessages(wiring.Component):
             self._peers.builtin(meta.slot, builtin_kind, what),
             self._peers.endpoint(endpoint, what),
         )
-        reading, putting = Signal(), Signal()
+        reading = Signal()
         scanned = Signal.like(self.peers.addr)
         m.d.comb += self.peers.addr.eq(Mux(reading, at, scanned))
         m.d.comb += self.write.data.eq(total)
@@ -193,7 +206,7 @@ class Submessages(wiring.Component):
                 m.d.sync += skip.eq(skip - 1)
                 m.next = state
             with m.If(ended):
-                m.next = "INVALID"
+                m.next = "DROP"
 
         def put(word: int) -> list[object]:
             return [putting.eq(1), what.eq(word)]
@@ -209,15 +222,10 @@ class Submessages(wiring.Component):
             self.discovery.meta.has_key.eq(has_key),
         ]
 
-        with m.FSM():
+        with m.FSM() as fsm:
             with m.State("IDLE"):
-                m.d.sync += [
-                    *(one.eq(0) for one in (builtin, spdp, found, gone, has_key, wrong)),
-                    *(one.eq(0) for one in (place, second, some)),
-                    reason.eq(unmatched),
-                ]
                 with m.If(ended):
-                    m.next = "INVALID"
+                    m.next = "DROP"
                 with m.Elif(i.valid):
                     m.next = "READER"
                     with m.If(is_data):
@@ -237,19 +245,21 @@ class Submessages(wiring.Component):
                         | (both == data_submessage.FLAG_D | data_submessage.FLAG_K)
                     )
                 ):
-                    m.next = "INVALID"
+                    m.next = "DROP"
             with m.State("READER"):
                 m.d.sync += [for_any.eq(empty), reader_number.eq(word[16:24])]
                 take("FIND")
+                with m.If(came & is_acknack):
+                    m.next = "NUMBERS"
             with m.State("FIND"):  # `word` is the id of the peer's endpoint
-                m.d.sync += endpoint.eq(0)
+                m.d.comb += [of_endpoint.eq(1), aside.en.eq(1)]
                 with m.If(came):
                     m.next = "SCAN"
                     with m.If(~meta.known):
                         m.next = "FOUND"
                     self._builtins(m, spdp, builtin, builtin_kind, found)
                 with m.If(ended):
-                    m.next = "INVALID"
+                    m.next = "DROP"
             find_endpoint(
                 m,
                 self._peers,
@@ -263,15 +273,17 @@ class Submessages(wiring.Component):
                 info,
                 found,
                 "FOUND",
+                equal,
             )
             with m.State("FOUND"):  # the word that was looked for is there still
                 take("NUMBERS")
-                with m.If(is_acknack):
-                    m.next = "WRITER"
-            with m.State("WRITER"):  # one reader of a peer matches one writer of ours
-                take("NUMBERS")
+                with m.If(
+                    came & is_acknack
+                ):  # one reader of a peer matches one writer of ours, which is skipped
+                    m.next = "READER"
             with m.State("NUMBERS"):
                 take("NUMBERS")
+                m.d.comb += aside.en.eq(1)
                 with m.If(came):
                     m.d.sync += place.eq(place + 1)
                     with m.If(~place[0]):
@@ -279,18 +291,11 @@ class Submessages(wiring.Component):
                     with m.Else():
                         m.d.sync += wrong.eq(wrong | (nothing & empty & ~place[1] & ~is_acknack))
                         with m.If(is_data):
-                            m.next = "EXTRA"
+                            m.next = "SKIP"
                         with m.Elif(place[1] | is_acknack):
                             m.next = "SET"
             # -- DATA
-            with m.State("EXTRA"):
-                with m.If(skip != 0):
-                    take("EXTRA")
-                with m.Elif(meta.flags & data_submessage.FLAG_Q):
-                    m.next = "QOS"
-                with m.Else():
-                    m.next = "COMPARE"
-            self._inline_qos(m, take, gone, has_key, skip)
+            qos = skip_inline_qos(m, i, meta, self.keep, take, gone, has_key, skip, odd)
             with m.State("ENCAPSULATION"):
                 m.d.sync += [
                     self.user.meta.representation.eq(Cat(word[8:16], word[:8])),
@@ -316,9 +321,10 @@ class Submessages(wiring.Component):
                 with m.If(~i.payload.end):
                     m.d.comb += i.ready.eq(self.discovery.stream.ready)
                 with m.Elif(i.valid & self.discovery.stream.ready):
+                    m.d.sync += done.eq(1)
                     m.next = "REST"
                     with m.If(spdp):
-                        m.next = "TAKEN"
+                        m.next = "DROP"
             # -- sets of numbers; a heartbeat's count is in the place of their size
             with m.State("SET"):
                 take("REST")
@@ -327,34 +333,36 @@ class Submessages(wiring.Component):
                     with m.If(is_gap):
                         m.next = "RUN"
                     with m.If(~below(number, MAX_BITS) & (number != MAX_BITS)):
-                        m.next = "INVALID"
+                        m.next = "DROP"
             with m.State("RUN"):  # ones that the first word begins with; what is behind is asked for again
-                bit = word.bit_select(Cat(~some[:3], some[3:5] ^ little.replicate(2)), 1)
-                with m.If(came & (skip != 0) & ~some[5] & bit):
-                    m.d.sync += [some.eq(some + 1), skip.eq(skip - 1)]
+                bit = word.bit_select(Cat(~ones[:3], ones[3:5] ^ little.replicate(2)), 1)
+                with m.If(came & (skip != 0) & ~ones[5] & bit):
+                    m.d.sync += [ones.eq(ones + 1), skip.eq(skip - 1)]
                 with m.Elif(i.valid):
                     m.next = "REST"
             # -- what is left of it is skipped, and at a good end it is done
             with m.State("REST"):
                 m.d.comb += i.ready.eq(came)
+                m.d.sync += [
+                    nothing_asked.eq(is_acknack & (skip == 0)),
+                    done.eq(found & ~wrong),
+                    unmatched.eq(~wrong),
+                ]
                 with m.If(ended):
                     m.next = "COMPARE"
-                    with m.If(is_data):
-                        m.d.sync += some.eq(1)
+                    with m.If(is_data | is_acknack):
                         m.next = "PUT NEXT"
-                    with m.If(is_acknack):
-                        m.d.sync += some.eq(skip - 1)
-                        m.next = "PUT LAST"
-                    with m.If(~found):
+                    with m.If(is_acknack & (skip != 0)):
+                        m.d.sync += skip.eq(skip - 1)
+                    with m.If(~found | wrong | i.payload.bad):
                         m.next = "DROP"
-                    with m.If(wrong | i.payload.bad):
-                        m.next = "INVALID"
             with m.State("COMPARE"):  # what is read in a step is there in the next but one
                 m.d.comb += [
                     reading.eq(1),
                     what.eq(Cat(step[:2], 1)),
                     high.eq(step == 1),
                     begun.eq(step == 3),
+                    self.fill_peers.eq(step[2]),
                 ]
                 m.d.sync += step.eq(step + 1)
                 with m.If(step[1]):
@@ -372,28 +380,28 @@ class Submessages(wiring.Component):
                 m.d.sync += told.eq(difference[31])
                 m.next = "DROP"
                 with m.If(wrong):
-                    m.next = "INVALID"
+                    m.next = "DROP"
                 with m.Elif(spdp):
                     m.next = "DISCOVERY"
                 with m.Elif(~found | (~builtin & ~for_any & (reader_number != ours + 1))):
-                    m.d.sync += reason.eq(unmatched)
-                with m.Elif(behind & known):
-                    m.d.sync += reason.eq(old)
+                    m.d.sync += unmatched.eq(1)
+                with m.Elif(behind):
+                    m.d.sync += old.eq(1)
                 with m.Elif(reliable & ~same & known):
-                    m.d.sync += reason.eq(early)
+                    m.d.sync += early.eq(1)
                 with m.Elif(builtin):
                     m.next = "DISCOVERY"
                 with m.Elif(~(meta.flags & data_submessage.FLAG_D).any()):
                     # It was disposed, or has no content: there is nothing to tell.
                     m.next = "REST"
                 with m.Elif(~room):
-                    m.d.sync += reason.eq(busy)
+                    m.d.sync += busy.eq(1)
                 with m.Else():
                     m.next = "ENCAPSULATION"
             with m.State("JUDGE GAP"):  # it must begin at what is wanted or before
                 m.d.sync += second.eq(1)
-                m.next = "TAKEN"
-                with m.If(~second & known & (same | behind)):
+                m.next = "DROP"
+                with m.If(~second & (same | behind)):
                     m.next = "COMPARE"
                 with m.If(second & ~behind):
                     m.next = "PUT NEXT"
@@ -402,53 +410,59 @@ class Submessages(wiring.Component):
                 with m.If(second):
                     m.d.comb += put(tables.LAST)
                     m.d.comb += self.due.en.eq((~(meta.flags & FLAG_F).any() | ~behind) & reliable)
-                    m.next = "TAKEN"
+                    m.next = "DROP"
                 with m.Elif(~known):
-                    m.d.sync += [second.eq(1), some.eq(1)]
+                    m.d.sync += second.eq(1)
                     m.next = "PUT NEXT"
                 with m.Elif(behind):
                     m.d.sync += second.eq(1)
                 with m.Else():
                     m.next = "PUT NEXT"
-            # What is kept of a peer's reader lies where that of a writer does: ACKED, ASK_FROM and ASK_TO.
-            with m.State("PUT LAST"):
-                m.d.comb += put(tables.LAST)
-                m.d.sync += [some.eq(0), step.eq(2)]
-                m.next = "PUT NEXT"
+            # What is kept of a peer's reader lies where that of a writer does: ACKED, ASK_FROM and, put first, ASK_TO.
             with m.State("PUT NEXT"):
-                m.d.comb += [high.eq(step == 1), putting.eq(step[1]), what.eq(Cat(step[0], 0, 1))]
-                m.d.sync += step.eq(step + 1)
-                with m.If(step == 2):
-                    m.d.sync += some.eq(carried)
+                m.d.comb += [
+                    self.fill_peers.eq(1),
+                    high.eq((step == 1) & ~is_acknack),
+                    putting.eq(step[1] | (step[0] & is_acknack)),
+                    put_low.eq(step == 2),
+                    put_high.eq(step == 3),
+                    what.eq(Mux(step[1], Cat(step[0], C(2, 2)), tables.LAST)),
+                ]
+                m.d.sync += [
+                    step.eq(step + 1),
+                    summand.eq(Mux(step[0], ones, skip)),
+                ]  # of a GAP, of an ACKNACK
+                with m.If(step[1]):
+                    m.d.sync += summand.eq(0)
                 with m.If(step == 3):
-                    m.d.comb += self.due.en.eq(is_acknack & ((skip != 0) | ~(meta.flags & FLAG_F).any()))
+                    m.d.comb += self.due.en.eq(is_acknack & ~(nothing_asked & (meta.flags & FLAG_F).any()))
                     m.d.sync += [step.eq(0), second.eq(1)]
-                    m.next = "TAKEN"
+                    m.next = "DROP"
                     with m.If(is_heartbeat):
                         m.next = "COMPARE"
                     with m.If(is_data & reliable & told):
                         m.d.sync += [more.eq(1), more_proxy.eq(proxy)]
-            with m.State("TAKEN"):
-                m.d.comb += i.ready.eq(1)
-                m.next = "IDLE"
             with m.State("DROP"):
                 m.d.comb += i.ready.eq(1)
                 with m.If(ended):
                     m.next = "IDLE"
                 with m.If(good):
                     m.d.comb += [
-                        self.drop_unmatched.eq(reason == unmatched),
-                        self.drop_old.eq(reason == old),
-                        self.drop_early.eq(reason == early),
-                        self.drop_busy.eq(reason == busy),
+                        self.drop_unmatched.eq(unmatched & ~done),
+                        self.drop_old.eq(old),
+                        self.drop_early.eq(early),
+                        self.drop_busy.eq(busy),
+                        self.drop_invalid.eq(~(done | unmatched | old | early | busy)),
                     ]
-                    with m.If(reason == early):
+                    with m.If(early):
                         m.d.sync += [more.eq(1), more_proxy.eq(proxy)]
-            with m.State("INVALID"):
-                m.d.comb += i.ready.eq(1)
-                with m.If(ended):
-                    m.d.comb += self.drop_invalid.eq(~i.payload.bad)
-                    m.next = "IDLE"
+        with m.If(fsm.ongoing("SCAN")):  # for the endpoint's id
+            m.d.comb += high.eq(1)
+        with m.If(fsm.ongoing("IDLE")):
+            m.d.sync += [
+                *(one.eq(0) for one in (builtin, spdp, found, gone, has_key, wrong, odd, *qos, endpoint)),
+                *(one.eq(0) for one in (place, second, ones, done, unmatched, old, early, busy)),
+            ]
         return m
 
     def _builtins(self, m: Module, spdp: Value, builtin: Value, kind: Value, found: Value) -> None:
@@ -462,39 +476,3 @@ class Submessages(wiring.Component):
             with m.If((word == value) & ((meta.id != submessage.ACKNACK) == is_writer)):
                 m.d.sync += [builtin.eq(1), kind.eq(number), found.eq(meta.known)]
                 m.next = "FOUND"
-
-    def _inline_qos(
-        self, m: Module, take: Callable[[str], None], gone: Value, has_key: Value, skip: Value
-    ) -> None:
-        """STATUS_INFO and KEY_HASH; whatever else is there is skipped."""
-        i, little = self.i.stream, self.i.meta.flags[0]
-        word = i.payload.data
-        came = i.valid & ~i.payload.end
-        pid = Mux(little, word[:16], Cat(word[8:16], word[:8]))
-        length = Mux(little, word[16:32], Cat(word[24:32], word[16:24]))
-        is_status, is_key = Signal(), Signal()
-        with m.State("QOS"):
-            take("QOS VALUE")
-            m.d.sync += [
-                is_status.eq(pid == PID_STATUS_INFO),
-                is_key.eq((pid == PID_KEY_HASH) & (length == 16)),
-                skip.eq(length[2:]),
-            ]
-            with m.If(came & (length[:2] != 0)):
-                m.next = "QOS ROUND"
-            with m.If(came & (pid == PID_SENTINEL)):
-                m.next = "COMPARE"
-        with m.State("QOS ROUND"):  # a word more, of what means nothing to us
-            take("QOS VALUE")
-            m.d.sync += [is_status.eq(0), skip.eq(skip)]
-        with m.State("QOS VALUE"):
-            with m.If(skip == 0):
-                m.next = "QOS"
-            with m.Else():
-                take("QOS VALUE")
-                with m.If(came):
-                    m.d.sync += [is_status.eq(0), has_key.eq(has_key | is_key)]
-                    with m.If(is_status):  # four octets, whose last has the flags, in whatever byte order
-                        m.d.sync += gone.eq((word[24:32] & (STATUS_DISPOSED | STATUS_UNREGISTERED)).any())
-                    with m.If(is_key):
-                        m.d.comb += [self.keep.en.eq(1), self.keep.word.eq(tables.SCRATCH_KEY + 4 - skip)]

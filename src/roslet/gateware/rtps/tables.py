@@ -23,7 +23,7 @@ PREFIX, LEASE, META_IP, META_PORT, USER_IP, USER_PORT, LEFT = 0, 3, 4, 5, 6, 7, 
 PARTICIPANT = 16
 
 # A proxy. Of a peer's writer: the next number that is wanted, and the last that there is; of a peer's reader: all before
-# ACKED are there, ASK_FROM to ASK_TO are asked for, and what is before START is not for it.
+# ACKED are there, ASK_FROM to ASK_TO are asked for, none if ASK_FROM is later, and what is before START is not for it.
 KEY, INFO, IP, PORT = 0, 1, 2, 3
 NEXT_LO, NEXT_HI, LAST = 4, 5, 6
 ACKED, ASK_FROM, ASK_TO, START = 4, 5, 6, 7

@@ -8,7 +8,7 @@ from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.compare import below
 from roslet.gateware.rtps.ports import KEEP, READ_LATENCY, SUBMESSAGE, ReadSignature
-from roslet.gateware.rtps.tables import OWN_PREFIX, PREFIX, SCRATCH_SOURCE, OwnMap, PeerMap
+from roslet.gateware.rtps.tables import OWN_PREFIX, PREFIX, SCRATCH_SOURCE, ZERO, OwnMap, PeerMap
 from roslet.gateware.words import MessageSignature
 from roslet.wire.rtps import header, submessage
 from roslet.wire.rtps.guid import PROTOCOLVERSION_MAJOR
@@ -21,6 +21,8 @@ _RTPS = int.from_bytes(header.PROTOCOL_RTPS, "little")
 _INFO_SRC_BEFORE = 2
 """Words of INFO_SRC before the prefix: unused, version and vendor."""
 _INFO_SRC_WORDS = _INFO_SRC_BEFORE + _PREFIX_WORDS
+_COMPARED = READ_LATENCY + 1
+"""Cycles from an address until what lies there has been compared."""
 
 
 class Walker(wiring.Component):
@@ -36,7 +38,7 @@ class Walker(wiring.Component):
     once it is known that the whole datagram is good: who has acted upon it need take nothing back. Where the datagram is
     bad, or ends within a submessage, so does the body.
 
-    Throughput one word a cycle; a sender's prefix, and every INFO_SRC, takes 3 * (participants + 2) cycles.
+    Throughput one word a cycle; a sender's prefix, and every INFO_SRC, takes 3 * (participants + 3) cycles, INFO_DST 15.
 
     Of good datagrams `drop_not_rtps`, `drop_version` (not 2.x), `drop_truncated` (ends within the header, or within a
     submessage by its length) drop what follows, as 8.3.4.1 has it; `drop_fragment` counts submessages that carry fragments.
@@ -78,13 +80,15 @@ class Walker(wiring.Component):
 
         kind, flags = Signal(8), Signal(8)
         # Words of the submessage, less one: after the last its highest bit is set
-        left, less = Signal(15), Signal(15)
+        left, less = Signal(15, init=-1), Signal(15)
         length, begun = Signal(16), Signal()  # what `word` says if it is the header of one; it is that
         to_end = Signal()  # it goes to the end of the message
         tail = Signal(2)  # octets by which its length misses whole words
         for_us = Signal()
         slot, is_known = Signal(8), Signal()
         at = Signal(2)  # of the three words of a prefix
+        step = Signal(range(self._peers.participants + _COMPARED + 1))  # of what is done with each
+        whole, not_rtps, other_version = Signal(), Signal(), Signal()  # how the message ends
         m.d.comb += [
             self.o.meta.id.eq(kind),
             self.o.meta.flags.eq(flags),
@@ -97,37 +101,41 @@ class Walker(wiring.Component):
         ]
         with m.If(taken):
             m.d.sync += left.eq(less)
+        equals_own = Signal()
+        m.d.sync += equals_own.eq(self.own.data == word)
 
         with m.FSM() as fsm:
             m.d.comb += self.idle.eq(fsm.ongoing("START"))
-            with m.State("START"):
-                m.d.sync += [for_us.eq(1), at.eq(0), left.eq(-1), to_end.eq(0)]
-                with m.If(i.valid & ~self.hold):
-                    m.next = "PROTOCOL"
+            with m.State("START"), m.If(i.valid & ~self.hold):
+                m.next = "PROTOCOL"
             with m.State("PROTOCOL"):
                 with m.If(ended):
-                    m.next = "SHORT"
+                    m.next = "DROP"
                 with m.Elif(i.valid):
                     m.d.comb += i.ready.eq(1)
                     m.next = "VERSION"
                     with m.If(word != _RTPS):
-                        m.next = "NOT RTPS"
+                        m.d.sync += not_rtps.eq(1)
+                        m.next = "DROP"
             with m.State("VERSION"):
                 with m.If(ended):
-                    m.next = "SHORT"
+                    m.next = "DROP"
                 with m.Elif(i.valid):
                     m.d.comb += i.ready.eq(1)
                     m.next = "PREFIX"
                     with m.If(word[:8] != PROTOCOLVERSION_MAJOR):
-                        m.next = "OTHER VERSION"
-            self._prefix(m, came, ended, at, slot, is_known)
+                        m.d.sync += other_version.eq(1)
+                        m.next = "DROP"
+            self._prefix(m, came, ended, at, step, slot, is_known)
             with m.State("SUBMESSAGE"):
-                m.d.sync += at.eq(0)
                 m.d.comb += begun.eq(1)
-                # It may have said before that it departs.
-                m.d.sync += is_known.eq(is_known & self.alive.bit_select(slot, 1))
+                m.d.sync += [
+                    whole.eq(ended),
+                    # It may have said before that it departs.
+                    is_known.eq(is_known & self.alive.bit_select(slot, 1)),
+                ]
                 with m.If(ended):
-                    m.next = "END"
+                    m.next = "DROP"
                 with m.Elif(i.valid):
                     m.d.comb += i.ready.eq(1)
                     m.d.sync += [
@@ -149,12 +157,13 @@ class Walker(wiring.Component):
                         with m.Case(*FRAGMENTS):
                             m.d.comb += self.drop_fragment.eq(for_us)
             with m.State("DESTINATION"):
-                with m.If((at == 0) & self._fewer(left, _PREFIX_WORDS) & ~to_end):
-                    m.next = "SKIP"
+                with m.If(left[-1] & ~to_end):  # it has less than a prefix
+                    m.next = "SUBMESSAGE"
                 with m.Else():
-                    self._compare_own(m, came, ended, at, for_us)
+                    ours = self._compare_own(m, came, ended, at, step, equals_own, for_us)
             with m.State("SOURCE"):
-                with m.If((at == 0) & self._fewer(left, _INFO_SRC_WORDS) & ~to_end):
+                few = left[-1] | below(left[:-1], _INFO_SRC_WORDS - 1)  # words for it
+                with m.If((at == 0) & few & ~to_end):
                     m.next = "SKIP"
                 with m.Elif(came):
                     m.d.comb += i.ready.eq(1)
@@ -163,19 +172,15 @@ class Walker(wiring.Component):
                         m.d.sync += at.eq(0)
                         m.next = "PREFIX"
                 with m.If(ended):
-                    m.next = "SHORT"
+                    m.next = "DROP"
             with m.State("BODY"):
-                with m.If(left[-1] & ~to_end):
+                with m.If((left[-1] & ~to_end) | ended):
                     m.next = "BODY END"
-                with m.Elif(ended):
-                    m.next = "BODY END"
-                    with m.If(~to_end):
-                        m.next = "BODY SHORT"
                 with m.Else():
                     m.d.comb += [o.valid.eq(i.valid), i.ready.eq(o.ready)]
             with m.State("BODY END"):
                 padding = Mux(to_end, i.payload.padding, tail)
-                missing = ~to_end & i.payload.end & (i.payload.padding > tail)
+                missing = ~to_end & i.payload.end & (~left[-1] | (i.payload.padding > tail))
                 settled = Signal()  # the item behind the body is there, which may be the end
                 m.d.comb += [
                     settled.eq(self.known & i.valid),
@@ -188,52 +193,49 @@ class Walker(wiring.Component):
                 with m.If(settled & o.ready):
                     m.next = "SUBMESSAGE"
                     with m.If(o.payload.bad):
-                        m.next = "SHORT"
-            with m.State("BODY SHORT"):
-                m.d.comb += [o.payload.end.eq(1), o.payload.bad.eq(1), o.valid.eq(1)]
-                with m.If(o.ready):
-                    m.next = "SHORT"
+                        m.next = "DROP"
             with m.State("SKIP"):
                 with m.If(left[-1] & ~to_end):
                     m.next = "SUBMESSAGE"
                 with m.Elif(ended):
-                    m.next = "END"
-                    with m.If(~to_end):
-                        m.next = "SHORT"
+                    m.d.sync += whole.eq(to_end)
+                    m.next = "DROP"
                 with m.Else():
                     m.d.comb += i.ready.eq(1)
-            # DROP, by reason; and the ordinary end, where nothing is left to be dropped.
-            for state, reason in (
-                ("END", None),
-                ("SHORT", self.drop_truncated),
-                ("NOT RTPS", self.drop_not_rtps),
-                ("OTHER VERSION", self.drop_version),
-            ):
-                with m.State(state):
-                    m.d.comb += i.ready.eq(1)
-                    with m.If(ended):
-                        if reason is not None:
-                            m.d.comb += reason.eq(~i.payload.bad)
-                        m.next = "START"
+            with m.State("DROP"):  # and the ordinary end, where nothing is left to be dropped
+                m.d.comb += i.ready.eq(1)
+                with m.If(ended):
+                    m.next = "START"
+                with m.If(ended & ~i.payload.bad):
+                    m.d.comb += [
+                        self.drop_not_rtps.eq(not_rtps),
+                        self.drop_version.eq(other_version),
+                        self.drop_truncated.eq(~(not_rtps | other_version | whole)),
+                    ]
+        with m.If(fsm.ongoing("START")):
+            m.d.sync += [
+                for_us.eq(1),
+                left.eq(-1),
+                to_end.eq(0),
+                *(one.eq(0) for one in (whole, not_rtps, other_version)),
+            ]
+        with m.If(fsm.ongoing("START") | fsm.ongoing("SUBMESSAGE")):
+            m.d.sync += [at.eq(0), step.eq(0), ours.eq(-1)]
         return m
 
-    @staticmethod
-    def _fewer(left: Value, words: int) -> Value:
-        """Whether so many words are not left."""
-        return left[-1] | below(left[:-1], words - 1)
-
-    def _prefix(self, m: Module, came: Value, ended: Value, at: Value, slot: Value, is_known: Value) -> None:
+    def _prefix(
+        self, m: Module, came: Value, ended: Value, at: Value, step: Value, slot: Value, is_known: Value
+    ) -> None:
         """Compare each word of a prefix, as it stands there, with that of each participant."""
         many = self._peers.participants
         i, word = self.i.stream, self.i.stream.payload.data
-        step = Signal(range(many + READ_LATENCY))
         match = Signal(many)  # so far; goes round with each word, the lowest bit is his whose word is there
-        same = Signal()
-        m.d.comb += same.eq(match[0] & (self.peers.data == word))
+        equal, same = Signal(), Signal()
+        m.d.sync += equal.eq(self.peers.data == word)
+        m.d.comb += same.eq(match[0] & equal)
         with m.State("PREFIX"):
             with m.If(ended):
-                m.d.sync += step.eq(0)
-                m.next = "SHORT"
+                m.next = "DROP"
             with m.Elif(came):
                 m.d.comb += self.peers.addr.eq(self._peers.participant(step, Cat(at, PREFIX)))
                 m.d.sync += step.eq(step + 1)
@@ -245,32 +247,33 @@ class Walker(wiring.Component):
                     m.d.sync += is_known.eq(0)
                     with m.If(at == 0):
                         m.d.sync += match.eq(self.alive)
-                with m.If(step >= READ_LATENCY):
+                with m.If(step >= _COMPARED):
                     m.d.sync += match.eq(Cat(match[1:], same))
                     with m.If(same):  # by the last word, it is who speaks
-                        m.d.sync += [is_known.eq(1), slot.eq(step - READ_LATENCY)]
-                with m.If(step == many + READ_LATENCY - 1):
+                        m.d.sync += [is_known.eq(1), slot.eq(step - _COMPARED)]
+                with m.If(step == many + _COMPARED - 1):
                     m.d.comb += i.ready.eq(1)
                     m.d.sync += [step.eq(0), at.eq(at + 1)]
                     with m.If(at == _PREFIX_WORDS - 1):
-                        m.d.sync += at.eq(0)
                         m.next = "SKIP"
 
-    def _compare_own(self, m: Module, came: Value, ended: Value, at: Value, for_us: Value) -> None:
-        """INFO_DST: our prefix, or none (GUIDPREFIX_UNKNOWN), which is everybody."""
-        ours, nobodys = Signal(init=1), Signal(init=1)
-        waited = Signal(range(READ_LATENCY + 1))
-        word = self.i.stream.payload.data
-        m.d.comb += self.own.addr.eq(self._own.own(OWN_PREFIX) + at)
-        with m.If(came & (waited != READ_LATENCY)):
-            m.d.sync += waited.eq(waited + 1)
-        with m.Elif(came):
-            m.d.comb += self.i.stream.ready.eq(1)
-            same, zero = ours & (word == self.own.data), nobodys & (word == 0)
-            m.d.sync += [ours.eq(same), nobodys.eq(zero), waited.eq(0), at.eq(at + 1)]
-            with m.If(at == _PREFIX_WORDS - 1):
-                m.d.sync += [for_us.eq(same | zero), ours.eq(1), nobodys.eq(1)]
-                m.next = "SKIP"
+    def _compare_own(
+        self, m: Module, came: Value, ended: Value, at: Value, step: Value, same: Value, for_us: Value
+    ) -> Value:
+        """INFO_DST: our prefix, or none (GUIDPREFIX_UNKNOWN), which is everybody. Each word is compared with ours, then with
+        zero. What it was until then; it must be high at the beginning."""
+        ours = Signal(2, init=-1)
+        m.d.comb += self.own.addr.eq(Mux(step[0], self._own.own(ZERO), self._own.own(OWN_PREFIX) + at))
+        with m.If(came):
+            m.d.sync += step.eq(step + 1)
+            with m.If(step == _COMPARED):
+                m.d.sync += ours[0].eq(ours[0] & same)
+            with m.If(step == _COMPARED + 1):
+                m.d.comb += self.i.stream.ready.eq(1)
+                m.d.sync += [step.eq(0), ours[1].eq(ours[1] & same), at.eq(at + 1)]
+                with m.If(at == _PREFIX_WORDS - 1):
+                    m.d.sync += for_us.eq(ours[0] | (ours[1] & same))
+                    m.next = "SKIP"
         with m.If(ended):
-            m.d.sync += [ours.eq(1), nobodys.eq(1), waited.eq(0)]
-            m.next = "SHORT"
+            m.next = "DROP"
+        return ours
