@@ -9,6 +9,7 @@ from amaranth.lib.wiring import In, Out, connect, flipped
 from roslet.gateware.arp_cache import INTERVAL, TRIES, ArpCache
 from roslet.gateware.arp_rx import ArpRx
 from roslet.gateware.arp_tx import ArpTx
+from roslet.gateware.fifo import FrameStage
 from roslet.gateware.meta import ADDRESSES, ETHERNET_RX, ETHERNET_TX, LookupSignature
 from roslet.gateware.stream import FrameSignature
 
@@ -60,7 +61,10 @@ class Arp(wiring.Component):
         m.submodules.tx = tx = ArpTx()
         connect(m, flipped(self.i), rx.i)
         connect(m, flipped(self.lookup), cache.lookup)
-        connect(m, tx.o, flipped(self.o))
+        # Between block RAM and whoever chooses whose frame goes out
+        m.submodules.register = register = FrameStage(ETHERNET_TX)
+        connect(m, tx.o, register.i)
+        connect(m, register.o, flipped(self.o))
         message = rx.message
         m.d.comb += [
             rx.addresses.eq(self.addresses),

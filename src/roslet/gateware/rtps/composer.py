@@ -48,7 +48,7 @@ class Composer(wiring.Component):
     Ports: `subject`, steady until `done` but for what is taken for it; `borrow`, the lower word of the number that is asked
     for is above that of the last; `peers` and `own`, read ports, of which `hide_peers` and `hide_own` say a cycle later that
     zero shall be given for what lies there; `word`, which `push` says is to be written, and `do` what else: it is zero
-    otherwise. The first word comes 5 cycles after `start`. What takes the words must have room for all. In the cycle of
+    otherwise. The first word comes 6 cycles after `start`. What takes the words must have room for all. In the cycle of
     the last, or the one or two after it, `done` is high, with what comes then in `do.then`, and `send` if they are a
     datagram. Up to `window` messages are asked for at once.
     """
@@ -84,7 +84,6 @@ class Composer(wiring.Component):
         here = Signal(range(len(self._rom.words)))  # what the ROM looks at
         # Of the template: a word comes from the ROM, then it is in `item`, then what it refers to is read, and is added to.
         running, coming, there = Signal(), Signal(), Signal()
-        first = self.at * ALIGNMENT
         item = Signal(WORD_BITS)
         argument, op = item[:32], item[32:]
         of_memory, of_peers = op[3], op[2]
@@ -96,15 +95,15 @@ class Composer(wiring.Component):
         m.d.comb += [
             in_message.eq(there & (op == Op.MESSAGE.value) & (word != words)),
             last.eq(there & does & do.end),
-            read.addr.eq(Mux(self.load, first, here)),
+            read.addr.eq(here),
             read.en.eq(~in_message),
         ]
         with m.If(~in_message):
-            m.d.sync += [item.eq(read.data), coming.eq(running | self.start), there.eq(coming)]
-            with m.If(running | self.start):
+            m.d.sync += [item.eq(read.data), coming.eq(running), there.eq(coming)]
+            with m.If(running):
                 m.d.sync += here.eq(here + 1)
         with m.If(self.load):
-            m.d.sync += here.eq(first | self.start)
+            m.d.sync += here.eq(self.at * ALIGNMENT)
         with m.If(self.start):
             m.d.sync += [running.eq(1), word.eq(0)]
         with m.If(last):
