@@ -502,7 +502,7 @@ class ComposerSpec(Spec):
             Assert(~dut.do.store | (running & ~second & ~stored & ~dut.push & (count == 2)), "stored"),
             Assert(~(running & dut.done & ~second) | stored, "stored"),
             Assert(dut.send == (dut.done & ~second), "sent"),
-            Assert(cycles <= needs + 7, "over"),
+            Assert(cycles <= needs + 8, "over"),
             Cover(running & dut.done & ~second & (words == 2), "message"),
         ]
 

@@ -66,7 +66,8 @@ def compose(
         init[at : at + 4] = [last & 0xFFFFFFFF, last >> 32, OLDEST, COUNT]
     theirs = [0] * peers.depth
     at = peers._participants + 16 * SLOT
-    theirs[at : at + 5] = [*words(THEIRS), THEIR_IP, META_PORT]
+    theirs[at : at + 3] = words(THEIRS)
+    theirs[at + tables.META_IP], theirs[at + tables.META_PORT] = THEIR_IP, META_PORT
     for place in (peers._endpoints + 8 * ENDPOINT, peers._builtins + 32 * SLOT + 8 * kind):
         wanted = [WANTED & 0xFFFFFFFF, WANTED >> 32]
         theirs[place : place + 8] = [*words(KEY), INFO, THEIR_IP, USER_PORT, *wanted, PROXY_6, PROXY_7]

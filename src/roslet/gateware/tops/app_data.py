@@ -112,7 +112,7 @@ class AppDataRx(wiring.Component):
 
     A message is kept here until it is known to be good, and until the user does not have the right to read the one before;
     that right is not given while it is written, an octet a cycle. So the memory never has parts of two messages while the
-    user reads, and what was bad never touches it. `recv` rises 3 cycles, and one for each octet, after the end of the
+    user reads, and what was bad never touches it. `recv` rises 4 cycles, and one for each octet, after the end of the
     message, where the memory is free. What comes while one is kept is for whoever gives messages to drop: `room` is low.
 
     Good, and dropped whole: `drop_long`, more than `size` octets.
@@ -148,9 +148,10 @@ class AppDataRx(wiring.Component):
         m.submodules.kept = kept = memory.Memory(shape=32, depth=max(2, words), init=[])
         write, read = kept.write_port(), kept.read_port(domain="comb")
         full, moving = Signal(), Signal()
-        count, octets = Signal(range(words + 1)), Signal(9)
-        long = Signal()
-        at = Signal(8)
+        judging = Signal()  # one has come whose end is good
+        count, long = Signal(range(words + 1)), Signal()
+        octets, too_long = Signal(9), Signal()  # of the one that is judged, or kept
+        at = octets[:8]
         representation = Signal(16)
         begins = _right(m, self.req, self.rel, self.grant, full, moving)
         with m.If(self.req & ~moving & ~begins & ~self.grant):
@@ -159,22 +160,29 @@ class AppDataRx(wiring.Component):
         # -- in
         came = i.valid & i.ready & ~i.payload.end
         m.d.comb += [
-            self.room.eq(self.enable & ~full),
-            i.ready.eq(~full),
+            self.room.eq(self.enable & i.ready),
+            i.ready.eq(~full & ~judging),
             write.addr.eq(count),
             write.data.eq(i.payload.data),
             write.en.eq(came & (count != words)),
-            octets.eq(Cat(C(0, 2), count) - i.payload.padding),
         ]
         with m.If(came):
             m.d.sync += [count.eq(count + (count != words)), long.eq(long | (count == words))]
         with m.If(i.valid & i.ready & i.payload.end):
-            m.d.sync += [count.eq(0), long.eq(0)]
-            with m.If(~i.payload.bad):
-                with m.If(long | (octets > self._size)):
-                    m.d.comb += self.drop_long.eq(1)
-                with m.Else():
-                    m.d.sync += [full.eq(1), representation.eq(self.i.meta.representation), at.eq(octets)]
+            m.d.sync += [
+                octets.eq(Cat(C(0, 2), count) - i.payload.padding),
+                too_long.eq(long),
+                representation.eq(self.i.meta.representation),
+                judging.eq(~i.payload.bad),
+                count.eq(0),
+                long.eq(0),
+            ]
+        with m.If(judging):
+            m.d.sync += judging.eq(0)
+            with m.If(too_long | (octets > self._size)):
+                m.d.comb += self.drop_long.eq(1)
+            with m.Else():
+                m.d.sync += full.eq(1)
 
         # -- out
         place = Signal(8)
