@@ -136,7 +136,7 @@ class IpStack(wiring.Component):
         for n, protocol in enumerate(self._protocols):
             taker = flipped(self.igmp) if protocol == ipv4.IGMP else blocks[_BLOCKS[protocol]].i
             connect(m, getattr(blocks["protocol"], f"o{n}"), taker)
-        self._join(m, "udp_rx", UDP_RX, blocks["udp"].o, flipped(self.udp_rx))
+        self._join(m, "udp_rx", UDP_RX, blocks["udp"].o, flipped(self.udp_rx), cut=True)
 
     def _send(self, m: Module) -> None:
         m.submodules.udp_tx = datagrams = UdpTx()
@@ -146,9 +146,9 @@ class IpStack(wiring.Component):
         connect(m, flipped(self.udp_tx), datagrams.i)
         if "icmp" in self._blocks:
             m.submodules.datagrams_tx = both = FrameArbiter(2)
-            self._join(m, "udp_tx", None, datagrams.o, both.i0)
+            self._join(m, "udp_tx", None, datagrams.o, both.i0, cut=True)
             self._join(m, "echoes", None, self._blocks["icmp"].o, both.i1)
             connect(m, both.o, packets.i)
         else:
-            self._join(m, "udp_tx", None, datagrams.o, packets.i)
+            self._join(m, "udp_tx", None, datagrams.o, packets.i, cut=True)
         self._join(m, "packets_tx", ETHERNET_TX, packets.o, flipped(self.tx), cut=True)

@@ -252,10 +252,12 @@ class Ros2Ether(EthernetUdp):
 
         name_words = Signal(7)
         m.submodules.loader = loader = Loader(program, len(words), own.address_bits, len(name_words))
-        loading, index = Signal.like(loader.index), Signal.like(loader.index)
-        m.d.comb += index.eq(Mux(loader.done, publisher.index, loading))
-        m.d.sync += [loading.eq(loader.index), name_words.eq((self.ros2_node_name_len + 3)[2:])]
-        word = gather(m, words, index)
+        loading = Signal.like(loader.index)
+        m.d.sync += [
+            loading.eq(Mux(loader.done, 0, loader.index)),
+            name_words.eq((self.ros2_node_name_len + 3)[2:]),
+        ]
+        word = gather(m, words, loading | publisher.index)  # which is zero before a message
         connect(m, loader.write, self._participant.own)
         connect(m, publisher.o, self._participant.publish0)
         m.d.comb += [
