@@ -90,14 +90,16 @@ class Ipv4Tx(wiring.Component):
         total = Signal(range(table.SIZE + min(self._whole, self._max_length) + 1))
         count = Signal(range(self._whole + 1))  # octets of this packet's payload that are out
         number = Signal(range(self._packets))  # of the packet within its datagram
-        more, boundary = Signal(), Signal()
+        more, boundary = Signal(), Signal()  # there is another behind it; all of this one's are out
         identification = Signal(16)
         packet_done, datagram_done, passed = Signal(), Signal(), Signal()
         again = number.any()
         with m.If(packet_done):
-            m.d.sync += count.eq(0)
+            m.d.sync += [count.eq(0), boundary.eq(0)]
         with m.Elif(passed):
             m.d.sync += count.eq(count + 1)
+            if self._cuts:
+                m.d.sync += boundary.eq(more & (count == self._piece - 1))
         with m.If(datagram_done):
             m.d.sync += [identification.eq(identification + 1), number.eq(0)]
         with m.If(step & in_rest & at[1] & ~again):
@@ -105,7 +107,6 @@ class Ipv4Tx(wiring.Component):
         if self._cuts:
             # One adder says how long a packet is, and at its end what is left behind it.
             added = (left + Mux(boundary, -self._piece, table.SIZE))[: len(left)]
-            m.d.comb += boundary.eq(more & (count == self._piece))
             m.d.sync += [
                 more.eq(above(left, self._whole)),
                 total.eq(Mux(more, table.SIZE + self._piece, added)),
