@@ -366,15 +366,21 @@ class Parameters(wiring.Component):
         act, read = v.act, self.read
         word = self.i.stream.payload.data
         own_ip, mask = Value.cast(self.addresses.ip), Value.cast(self.addresses.mask)
-        is_near = ((word ^ own_ip) & mask) == 0
+        # Of a word whose octets have passed
+        is_near, is_host, is_group = Signal(), Signal(), Signal()
+        m.d.sync += [
+            is_near.eq(((word ^ own_ip) & mask) == 0),
+            is_host.eq((word[:8] != 0) & (word[:8] != LOOPBACK)),
+            is_group.eq(word == GROUP),
+        ]
         user_group_port = Signal(16)
         m.d.comb += user_group_port.eq(self.group_port + USER_GROUP_PORT)
         with m.If(v.second & v.last):
             m.d.sync += v.usable.eq(v.usable & ~v.high & Mux(act.group, v.number == user_group_port, v.any))
         flag, near = Mux(act.user, read.user, read.meta), v.near.bit_select(act.user, 1)
-        wanted = (word[:8] != 0) & (word[:8] != LOOPBACK) & (~flag | (is_near & ~near))
+        wanted = is_host & (~flag | (is_near & ~near))
         with m.If((v.at == 5) & v.usable & ~v.passes):
-            with m.If(act.group & (word == GROUP)):
+            with m.If(act.group & is_group):
                 m.d.sync += self.listens.eq(1)
             with m.If(act.locator & wanted):
                 m.d.comb += [v.keeps_word.eq(~v.last), v.keeps_number.eq(v.last)]

@@ -76,17 +76,20 @@ class Periods(wiring.Component):
         waiting = {name: Signal(name=f"{name}_waiting") for name in ("announce", "sweep", "publish")}
         periods = [getattr(self, name) for name in names]
         periods[0] = Mux(quick != 0, self._quick, periods[0])
-        less, after = Signal(shape), Signal(shape)  # a period's complement; what is left then
+        # What was left; a period's complement; what is left then
+        before, less, after = Signal(shape), Signal(shape), Signal(shape)
         m.d.comb += [read.addr.eq(at), write.addr.eq(at), write.data.eq(after)]
-        m.d.sync += steps.eq(steps + step)
+        m.d.sync += [steps.eq(steps + step), before.eq(read.data)]
         m.d.sync += less.eq(~Cat(pick(periods, at), C(0, 1)))
         with m.If(~again):
             m.d.sync += less.eq(0)
         with m.FSM() as fsm:
             with m.State("READ"):
+                m.next = "LOOK"
+            with m.State("LOOK"):
                 m.next = "COUNT"
             with m.State("COUNT"):
-                m.d.sync += after.eq((Cat(C(1, 1), read.data) + Cat(again, less | Mux(again, 0, passed)))[1:])
+                m.d.sync += after.eq((Cat(C(1, 1), before) + Cat(again, less | Mux(again, 0, passed)))[1:])
                 m.next = "STORE"
             with m.State("STORE"):
                 m.d.comb += write.en.eq(1)
@@ -114,7 +117,7 @@ class Periods(wiring.Component):
                         m.d.sync += [at.eq(0), running.eq(self.enable), fresh.eq(fresh & ~running)]
                         m.d.sync += [passed.eq(steps), steps.eq(step)]
         # What is late is not more than due.
-        with m.If(fsm.ongoing("COUNT") & ~again & (stopped | ~read.data[-1])):
+        with m.If(fsm.ongoing("COUNT") & ~again & (stopped | ~before[-1])):
             m.d.sync += after.eq(0)
         return m
 
