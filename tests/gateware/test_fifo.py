@@ -9,6 +9,7 @@ import pytest
 from amaranth.hdl import Module, unsigned
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
+from amaranth.sim import Simulator
 
 from gateware.frames import STALLS, Bad, Bench
 from gateware.phy import some
@@ -103,6 +104,23 @@ def test_a_place_for_messages_keeps_them_and_what_is_known_of_them(stalls: int) 
     bench.run(lambda: len(got) == len(messages))
     assert kinds([message for message, _ in got]) == kinds(messages)
     assert [meta for _, meta in got] == list(range(len(messages)))
+
+
+def test_an_empty_place_for_messages_has_what_was_before_it_although_that_is_not_valid() -> None:
+    """The participant keeps words by that: a GUID prefix, and a key, pass two places without being taken."""
+    block = MessageRegister(unsigned(8))
+    simulator = Simulator(block)
+    simulator.add_clock(1e-6)
+
+    async def bench(ctx: Any) -> None:
+        for word in (5, 0xFFFFFFFF, 0, 7):
+            ctx.set(block.i.stream.payload.data, word)
+            await ctx.tick()
+            assert not ctx.get(block.o.stream.valid)
+            assert ctx.get(block.o.stream.payload.data) == word
+
+    simulator.add_testbench(bench)
+    simulator.run()
 
 
 def test_a_place_for_messages_passes_a_word_in_two_cycles() -> None:

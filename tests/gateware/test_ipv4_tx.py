@@ -127,6 +127,13 @@ def test_a_payload_that_ends_badly_or_is_not_as_long_as_was_said_ends_badly(bloc
     assert judged(got[-1], 6, dst=PEER, proto=17, ttl=64) == noise(9)
 
 
+@pytest.mark.parametrize("block", [Ipv4Tx(), Ipv4Tx(max_length=1480)])
+@pytest.mark.parametrize("more", [1024, 2048, 4096])
+def test_a_payload_that_is_longer_by_a_power_of_two_ends_badly(block: Ipv4Tx, more: int) -> None:
+    got = packets(block, [noise(8 + more), noise(8)], [lead_of(8)] * 2, 2)
+    assert [type(packet) for packet in got] == [Bad, bytes]
+
+
 def test_of_a_datagram_that_ends_badly_the_last_fragment_does() -> None:
     got = packets(
         Ipv4Tx(mtu=106),

@@ -13,9 +13,6 @@ from roslet.gateware.octets import octets, pick
 from roslet.gateware.stream import FrameSignature
 from roslet.wire.net import ethernet
 
-ADDRESS = 6
-"""Octets of an address."""
-
 GROUP_BIT = 0
 """Of the first octet: the address is one of a group, or broadcast. IEEE 802.3, 3.2.3."""
 
@@ -60,7 +57,7 @@ class EthernetRx(wiring.Component):
         # The destination is compared as its octets pass; a header is longer than it, so that it is known by the body.
         i = self.i.stream
         at = reader.at
-        comparing = i.valid & ~(at[3] | (at[2] & at[1]))  # less than ADDRESS
+        comparing = i.valid & ~(at[3] | (at[2] & at[1]))  # less than HOP
         group = Signal()
         with m.If(i.valid & (at == 0)):
             m.d.sync += group.eq(i.payload.data[GROUP_BIT])

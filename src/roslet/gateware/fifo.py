@@ -83,8 +83,8 @@ class FrameStage(wiring.Component):
     """One place in registers between `i` and `o`, both with `meta`: no path of items leads through, but that of `ready`
     does: for where `o.ready` comes early. It has a sixth of the logic of a `FrameRegister`.
 
-    `meta` passes as it is, and is not kept: where there is one, an end is taken at `i` when it is at `o`. Throughput one
-    octet a cycle; latency one cycle.
+    `meta` passes as it is, and is not kept: where there is one, an end is taken at `i` in the cycle in which it is taken at
+    `o`. Throughput one octet a cycle; latency one cycle.
     """
 
     def __init__(self, meta: ShapeLike | None = None) -> None:
@@ -109,8 +109,9 @@ class MessageRegister(wiring.Component):
     """One place in registers between `i` and `o`, messages with `meta`: no path leads through, and of what is before it
     `o.ready` moves two bits only.
 
-    `meta` passes as it is, and is not kept: an end is taken at `i` in the cycle after it was taken at `o`. Throughput one
-    word in two cycles; latency one cycle.
+    `meta` passes as it is, and is not kept: an end is taken at `i` in the cycle after it was taken at `o`. While nothing is
+    valid at `o`, its payload is what was at `i` a cycle before, valid or not: `Participant` keeps words by that. Throughput
+    one word in two cycles; latency one cycle.
     """
 
     def __init__(self, meta: ShapeLike) -> None:

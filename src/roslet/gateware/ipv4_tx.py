@@ -88,7 +88,9 @@ class Ipv4Tx(wiring.Component):
 
         left = Signal(range(self._max_length + 1))  # octets of the datagram, without the packets before
         total = Signal(range(table.SIZE + min(self._whole, self._max_length) + 1))
-        count = Signal(range(self._whole + 1))  # octets of this packet's payload that are out
+        count = Signal(
+            range(self._whole + 2)
+        )  # octets of this packet's payload that are out; or more than it may have
         number = Signal(range(self._packets))  # of the packet within its datagram
         more, boundary = Signal(), Signal()  # there is another behind it; all of this one's are out
         identification = Signal(16)
@@ -97,7 +99,7 @@ class Ipv4Tx(wiring.Component):
         with m.If(packet_done):
             m.d.sync += [count.eq(0), boundary.eq(0)]
         with m.Elif(passed):
-            m.d.sync += count.eq(count + 1)
+            m.d.sync += count.eq(count + ~count.all())
             if self._cuts:
                 m.d.sync += boundary.eq(more & (count == self._piece - 1))
         with m.If(datagram_done):

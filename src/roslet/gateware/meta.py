@@ -29,7 +29,8 @@ IPV4_RX = data.StructLayout(
     {"mac": 48, "source": 32, "destination": 32, "protocol": 8, "length": 16, "group": 1}
 )
 """Behind an IPv4 header, or several of fragments: `mac` and `source` sent it; `length` of what follows, which a frame that
-ends badly may have less of, and none more; `group` as above."""
+ends badly may have less of, and none more; `group` as above. Who takes the frame may have `source` and `destination` go
+round by an octet a cycle, and has them as they were when its end is taken (`Ipv4Rx.turn`)."""
 
 IPV4_FRAGMENT = data.StructLayout(
     {**{name: field.shape for name, field in IPV4_RX}, "identification": 16, "offset": 13, "more": 1}

@@ -165,7 +165,7 @@ class UdpTx(wiring.Component):
     A checksum is always sent, never zero. The lead begins with the first item of `i`, which then waits until the header is
     out: this begins 6 cycles behind the lead, and pauses for 4 before its checksum; the data pass without a register, one
     octet a cycle. `i.meta.length` and `i.meta.sum` are taken as they are: who sends octets that they do not fit sends a
-    datagram that its receiver will drop. A frame whose end is bad has a bad end. Holds nothing but the sum; drops nothing.
+    datagram that its receiver will drop. A frame whose end is bad has a bad end. Holds sum and length; drops nothing.
     """
 
     def __init__(self) -> None:
@@ -181,7 +181,7 @@ class UdpTx(wiring.Component):
         m = Module()
         i, o = self.i.stream, self.o.stream
         meta = self.i.meta
-        length = Signal(16)  # from the second cycle of LEAD on
+        length = Signal(16)  # from the second cycle of a frame on
         m.d.sync += length.eq(Cat(meta.length[:3], meta.length[3:] + 1))  # and udp.SIZE, 8
         numbers = {**{name: meta[name] for name in ("source_port", "destination_port")}, "length": length}
         header = [octet for field in _NUMBERS for octet in (numbers[field.name][8:], numbers[field.name][:8])]

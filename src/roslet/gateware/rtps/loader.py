@@ -18,8 +18,8 @@ class Loader(wiring.Component):
     """Makes the stores of a program, in order, once; from when `enable` is high on.
 
     Ports: `index`, which word is wanted, and `word`, that word, in the next cycle or the one behind it, and zero from the
-    cycle after `done` on, as `write.data` is no other; `name_words`; `write`; `done`, high when all is written, until the
-    next reset. A store takes 4 cycles.
+    cycle after `done` on: it is `write.data` as it is, which is or-ed with others; `name_words`; `write`; `done`, high when
+    all is written, until the next reset. A store takes 4 cycles.
     """
 
     def __init__(self, program: Sequence[Store], words: int, address_bits: int, name_bits: int) -> None:

@@ -111,7 +111,7 @@ LAST = 5
 class _Passing:
     """What is passing: a parameter's header, or its value."""
 
-    def __init__(self, locals_: int, peers: PeerMap) -> None:
+    def __init__(self, locals_: int) -> None:
         self.act, self.known = Signal(_ROW), Signal()
         self.must = Signal()  # it must be understood
         self.little = Signal()
@@ -207,7 +207,7 @@ class Parameters(wiring.Component):
             shape=_ROW, depth=2 << _ID_BITS, init=_rows(_OF_ENDPOINTS, _OF_PARTICIPANTS)
         )
         row = table.read_port()
-        v = _Passing(self.locals, self._peers)
+        v = _Passing(self.locals)
         v.octets(m, word)
         length = Signal(16)
         m.d.sync += v.step.eq(v.step + came)
@@ -300,12 +300,15 @@ class Parameters(wiring.Component):
                 v.act.eq(0),
                 v.number.eq(DEFAULT_LEASE // 1_000_000_000),
             ]
+        # Which of the two is kept is known late in a cycle, so it is chosen in the next.
         kept_word, kept_number = Signal(32), Signal(tables.LEASE_BITS)
+        is_word, is_number = Signal(), Signal()
         m.d.sync += [
-            self.write.en.eq(v.keeps_word | v.keeps_number),
             self.write.addr.eq(self._peers.scratch(v.target)),
             kept_word.eq(word),
             kept_number.eq(Cat(v.number, v.keeps_high)),
+            is_word.eq(v.keeps_word),
+            is_number.eq(v.keeps_number),
         ]
         with m.If(~(v.keeps_word | v.keeps_number)):
             m.d.sync += self.write.addr.eq(0)
@@ -316,10 +319,10 @@ class Parameters(wiring.Component):
             m.d.comb += v.target.eq(Cat(v.last, v.act.user, 1))
         with m.If(self.keep.en):
             m.d.comb += [v.keeps_word.eq(1), v.target.eq(self.keep.word)]
-        for keeps, kept in ((v.keeps_word, kept_word), (v.keeps_number, kept_number)):
-            with m.If(~keeps):
-                m.d.sync += kept.eq(0)
-        m.d.comb += self.write.data.eq(kept_word | kept_number)
+        m.d.comb += [
+            self.write.en.eq(is_word | is_number),
+            self.write.data.eq(Mux(is_word, kept_word, 0) | Mux(is_number, kept_number, 0)),
+        ]
         return m
 
     def _judge(self, m: Module, v: _Passing) -> None:

@@ -50,9 +50,9 @@ class Participant(wiring.Component):
     `drop_<block>_<reason>`.
 
     What is known at run time only: `own`, writes our own memory, for which nothing of this may be going on: hold it in reset
-    meanwhile; `group_port` and `source_port`, where all are announced to, and what we send from; `writers_enabled`,
-    `readers_enabled`, as `Sender` has them. `own_map` says what lies where, and `most`, how many octets the longest datagram
-    has that is sent.
+    meanwhile; `group_port`, where others are announced to, as GROUP_PORT_OWN says in our memory of us: who sets the one
+    writes the other; `source_port`, what we send from; `writers_enabled`, `readers_enabled`, as `Sender` has them. `own_map`
+    says what lies where, and `most`, how many octets the longest datagram has that is sent.
     """
 
     def __init__(
@@ -84,9 +84,6 @@ class Participant(wiring.Component):
         most = 4 * max(self._rom.size[name] for name in self._rom.size)
         most += 4 * max((local.words for local in own.writers), default=0)
         self.most = most
-        depth = 512
-        while depth < 2 * (most // 4 + 1):
-            depth *= 2
         self._users, self._readers = len(writers), len(readers)
         window = max(1, longest // DISCOVERY_SIZE)
         self._composer = Composer(self._rom, peers, own, window)
@@ -97,7 +94,7 @@ class Participant(wiring.Component):
             "discovery": Discovery(peers, own, domain is not None),
             "turns": Turns(peers),
             "sender": Sender(self._rom, peers, own, len(writers), window),
-            "outbox": Outbox(most, depth),
+            "outbox": Outbox(most, 2 << (most // 4).bit_length()),
         }
         self.drops = [
             (block, name)
@@ -222,7 +219,7 @@ class Participant(wiring.Component):
             blocks[name] for name in ("walker", "submessages", "discovery", "sender")
         )
         given: dict[tuple[str, str], tuple[Value, Signal]] = {}
-        for side, group in (("receiving", (walker, submessages, discovery)), ("sending", (sender, composer))):
+        for side, group in (("receiving", (walker, submessages, discovery)), ("sending", (composer,))):
             for mem, name in ((peers, "peers"), (own, "own")):
                 users = [getattr(block, name) for block in group if name in block.signature.members]
                 read, word = mem.read_port(), Signal(32, init=0xFFFFFFFF if side == "receiving" else 0)
@@ -231,15 +228,15 @@ class Participant(wiring.Component):
                 m.d.comb += [user.data.eq(word) for user in users]
                 given[side, name] = read.addr, word
         write, ours = peers.write_port(), own.write_port()
-        # What is kept of a word that passes is written where it is two registers later: while the walker, or `submessages`,
-        # is where it keeps one, nothing is valid in those behind it.
+        # What is kept of a word that passes is written where it is two registers later: a word at the walker is in `bodies`
+        # in the next cycle, and in `lists` in the one behind it, as nothing is valid in either meanwhile.
         in_bodies = Signal(KEEP)
         m.d.sync += [
             in_bodies.eq(walker.keep),
             discovery.keep.eq(in_bodies.as_value() | Value.cast(submessages.keep)),
         ]
         # In the cycle after, as what is written takes long; what discovery writes has waited, and what comes from outside
-        # does so while all others are held in reset: these are zero in the meantime.
+        # does so while all others are held in reset. Of `later` and `other` one is zero.
         for port, block, other in ((write, submessages, discovery.write), (ours, sender, self.own)):
             for name in ("en", "addr", "data"):
                 later = Signal.like(getattr(port, name))

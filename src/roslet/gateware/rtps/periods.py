@@ -19,8 +19,9 @@ class Periods(wiring.Component):
     """Pulses of one cycle, while `enable` is high: `tick` each `second` cycles; `announce`, `sweep`, `publish` each so many
     steps as their period says, where a step is `prescaler_div` cycles; `sweep` has several periods, any of which counts.
 
-    The first announcement comes at once, and the next ones `quick` steps apart: peers that start together find each other
-    although some are lost. The first `publish` comes a period after `publishing` has risen, and none while it is low.
+    The first announcement and the first sweep come at once, and the next announcements `quick` steps apart: peers that start
+    together find each other although some are lost. The first `publish` comes a period after `publishing` has risen, and
+    none while it is low.
 
     Of what is due at the same time one comes after the other, `interval` steps apart. What is due again before it came comes
     once. A period of 0 is one of 1, and so is a `prescaler_div` of 0. Periods have `bits`. One adder counts all of them, by

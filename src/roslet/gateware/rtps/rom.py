@@ -49,7 +49,7 @@ class Op(enum.IntEnum):
     """What a word of a template is, and its argument, the other 32 bits.
 
     From OWN on it is a word of a memory, and from WRITER on the argument is `DO`: which word, and what to do with it. The
-    two bits below the highest say which memory.
+    bit below the highest says which memory; what END reads nobody takes.
     """
 
     LITERAL = 0  # the argument
@@ -172,7 +172,7 @@ ALIGNMENT = 16
 
 class Rom:
     """The templates of a node with these topics; one begins in `words` at ALIGNMENT * `start[name]`, and its datagram has
-    `size[name]` words, without the message. `lease` in seconds.
+    `size[name]` words, with one for the message. `lease` in seconds.
 
     What is written first is where it goes to, the address and then the port; then comes the datagram. Those that write
     nothing are for what they do.

@@ -33,10 +33,8 @@ class Sending:
         self.in_group, self.heard, self.unacknowledged = Signal(), Signal(), Signal()
         self.start, self.ask_to = Signal(self.age_shape), Signal(self.age_shape)
         self.last = Signal(32)
-        self.placed, self.counted = (
-            Signal(),
-            Signal(),
-        )  # of the message: where it belongs; all that was looked at before
+        # Of the message it is known where it belongs; all that is looked at before it
+        self.placed, self.counted = Signal(), Signal()
         self._take(m)
 
     def _take(self, m: Module) -> None:

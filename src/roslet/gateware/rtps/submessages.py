@@ -275,11 +275,11 @@ class Submessages(wiring.Component):
                 "FOUND",
                 equal,
             )
-            with m.State("FOUND"):  # the word that was looked for is there still
+            # The word that was looked for is there still. One reader of a peer matches one writer of ours: its id is
+            # skipped.
+            with m.State("FOUND"):
                 take("NUMBERS")
-                with m.If(
-                    came & is_acknack
-                ):  # one reader of a peer matches one writer of ours, which is skipped
+                with m.If(came & is_acknack):
                     m.next = "READER"
             with m.State("NUMBERS"):
                 take("NUMBERS")

@@ -146,15 +146,8 @@ class Local:
 
 
 # Of our own memory
-OWN_PREFIX, OWN_IP, META_PORT_OWN, USER_PORT_OWN, ZERO, GROUP_PORT_OWN, USER_GROUP_PORT_OWN = (
-    0,
-    3,
-    4,
-    5,
-    6,
-    7,
-    8,
-)
+OWN_PREFIX, OWN_IP, META_PORT_OWN, USER_PORT_OWN, ZERO = 0, 3, 4, 5, 6
+GROUP_PORT_OWN, USER_GROUP_PORT_OWN = 7, 8
 OWN_WORDS = 16
 # Of a writer: the number of its last message; how many before that are kept, -1 where there is none; and the count of the
 # heartbeats that it sends, and of the ACKNACKs of our reader with the same number: each needs one that rises, no more

@@ -261,7 +261,7 @@ class Walker(wiring.Component):
         self, m: Module, came: Value, ended: Value, at: Value, step: Value, same: Value, for_us: Value
     ) -> Value:
         """INFO_DST: our prefix, or none (GUIDPREFIX_UNKNOWN), which is everybody. Each word is compared with ours, then with
-        zero. What it was until then; it must be high at the beginning."""
+        zero. Returns whether those until now were like that, two bits that must be set before."""
         ours = Signal(2, init=-1)
         m.d.comb += self.own.addr.eq(Mux(step[0], self._own.own(ZERO), self._own.own(OWN_PREFIX) + at))
         with m.If(came):
