@@ -10,11 +10,15 @@ from typing import Any
 
 from roslet.gateware import toolchain
 
-_REFINE = "mfs2,-a{L};lutpack,-S,1"
-_MAP = f"strash;dch,-f;if,-D,{{levels}},-F,5,-A,5;{_REFINE.replace('{L}', ',-L,{levels}')}"
-MAPPING = ";".join(("strash;ifraig;scorr;dc2;if,-a", _REFINE.replace("{L}", ""), *[_MAP] * 5))
-"""ABC's script, as Yosys takes it: mapped to the fewest LUTs, whatever comes of the clock, and from there five times again,
-with no more than `levels` LUTs in a row."""
+ROUNDS = 5
+
+
+def mapping(levels: int) -> str:
+    """ABC's script, as Yosys takes it: mapped to the fewest LUTs, whatever comes of the clock, and from there ROUNDS times
+    again, with no more than `levels` LUTs in a row."""
+    first = ["strash", "ifraig", "scorr", "dc2", "if,-a", "mfs2,-a", "lutpack,-S,1"]
+    again = ["strash", "dch,-f", f"if,-D,{levels},-F,5,-A,5", f"mfs2,-a,-L,{levels}", "lutpack,-S,1"]
+    return ";".join(first + ROUNDS * again)
 
 
 @dataclass(frozen=True)
@@ -95,7 +99,7 @@ def build(
     script = (
         toolchain.write_rtlil(top, name, folder, free=True),
         f"{synthesis} -run :map_luts",
-        f"abc -lut 4 -script +{MAPPING.format(levels=chip.levels)}",
+        f"abc -lut 4 -script +{mapping(chip.levels)}",
         chip.mapped,
         f"{synthesis} -run map_cells: -json {netlist}",
     )
