@@ -209,7 +209,7 @@ class Parameters(wiring.Component):
         row = table.read_port()
         v = _Passing(self.locals)
         v.octets(m, word)
-        length = Signal(16)
+        length = Signal(16)  # of the value; in words, and two bits, what is left of it
         m.d.sync += v.step.eq(v.step + came)
         with m.If(v.last):
             m.d.sync += v.step.eq(0)
@@ -256,7 +256,7 @@ class Parameters(wiring.Component):
                     m.next = "REST"
                 with m.Elif(length[:2] != 0):
                     m.next = "MALFORMED"
-                with m.Elif(v.at == length[2:]):
+                with m.Elif(length[2:] == 0):
                     m.next = "PARAMETER"
                     with m.If(~v.over & ~(v.partial & (v.number[:2] == 0))):
                         m.next = "MALFORMED"
@@ -289,6 +289,8 @@ class Parameters(wiring.Component):
         # Below all states: so these are resets of registers, not inputs of multiplexers.
         with m.If(i.valid & i.ready):
             m.d.sync += [v.at.eq(v.at + 1), v.first.eq(0), v.second.eq(v.first)]
+        with m.If(fsm.ongoing("VALUE") & i.valid & i.ready):
+            m.d.sync += length[2:].eq(length[2:] - 1)
         with m.If(fsm.ongoing("PARAMETER")):
             m.d.sync += [v.at.eq(0), v.first.eq(1), v.second.eq(0), v.over.eq(1)]
         with m.If(fsm.ongoing("IDLE")):
