@@ -147,7 +147,8 @@ class Ipv4Rx(wiring.Component):
 
         # -- what comes after
 
-        is_fragment = flags_fragment[:14].any()  # MORE_FRAGMENTS, and the offset
+        is_fragment = Signal()  # known long before the header is over
+        m.d.sync += is_fragment.eq(flags_fragment[:14].any())  # MORE_FRAGMENTS, and the offset
         ready = Mux(is_fragment, self.fragments.stream.ready, self.o.stream.ready)
         valid = Signal()
         over = at == total
