@@ -83,11 +83,13 @@ class FrameStage(wiring.Component):
     """One place in registers between `i` and `o`, both with `meta`: no path of items leads through, but that of `ready`
     does: for where `o.ready` comes early. It has a sixth of the logic of a `FrameRegister`.
 
-    `meta` passes as it is, and is not kept: where there is one, an end is taken at `i` in the cycle in which it is taken at
-    `o`. Throughput one octet a cycle; latency one cycle.
+    `meta` passes as it is, and is not kept; or, with `late`, through a register, where it is chosen from much and does not
+    change before its end is taken. Where there is one, an end is taken at `i` in the cycle in which it is taken at `o`.
+    Throughput one octet a cycle; latency one cycle.
     """
 
-    def __init__(self, meta: ShapeLike | None = None) -> None:
+    def __init__(self, meta: ShapeLike | None = None, late: bool = False) -> None:
+        self._late = late
         super().__init__({"i": In(FrameSignature(meta)), "o": Out(FrameSignature(meta))})
 
     def elaborate(self, platform: object) -> Module:
@@ -99,7 +101,8 @@ class FrameStage(wiring.Component):
             m.d.comb += i.ready.eq(free)
         else:
             copied = o.valid & o.payload.end  # of the end that is valid at `i`
-            m.d.comb += [self.o.meta.eq(self.i.meta), i.ready.eq(free & (copied | ~i.payload.end))]
+            m.d.comb += i.ready.eq(free & (copied | ~i.payload.end))
+            m.d["sync" if self._late else "comb"] += self.o.meta.eq(self.i.meta)
         with m.If(free):
             m.d.sync += [o.payload.eq(i.payload), o.valid.eq(i.valid & ~copied)]
         return m

@@ -127,6 +127,13 @@ class StageSpec(RegisterSpec):
         return self.gates.FrameStage(2)
 
 
+class LateStageSpec(StageSpec):
+    """The same where what is known passes through a register, too."""
+
+    def block(self) -> Any:
+        return self.gates.FrameStage(2, late=True)
+
+
 TAKEN = "m.d.sync += o.valid.eq(~o.ready)"
 COMES = "o.valid.eq(i.valid & ~gone)"
 PLACED = f"m.d.sync += [o.payload.eq(i.payload), {COMES}]"
@@ -253,6 +260,7 @@ SPECS: tuple[type[Spec], ...] = (
     FifoSpec,
     RegisterSpec,
     StageSpec,
+    LateStageSpec,
     MessageRegisterSpec,
     AsyncFifoSpec,
     LossyFifoSpec,

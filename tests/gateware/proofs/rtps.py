@@ -372,7 +372,7 @@ class OutboxSpec(Spec):
     )
 
     def block(self) -> Any:
-        return self.gates.Outbox(12, 8, 1)
+        return self.gates.Outbox(12, 1)
 
     def properties(self, m: Module) -> None:
         dut = self.dut

@@ -12,7 +12,7 @@ from gateware.frames import STALLS
 from gateware.words import WordBench, words
 from roslet.gateware.rtps.outbox import Outbox
 
-LONGEST, DEPTH, PATIENCE = 40, 32, 6
+LONGEST, PATIENCE = 40, 6
 SILENT, FAILED = 0x0A0A0A0A, 0x0B0B0B0B
 
 
@@ -37,7 +37,7 @@ class Box:
     def __init__(
         self, datagrams: list[Datagram], stalls: int = 0, late: int = 0, slow: int = 0, take: bool = True
     ) -> None:
-        self.bench = WordBench(Outbox(LONGEST, DEPTH, PATIENCE), stalls, seed=stalls)
+        self.bench = WordBench(Outbox(LONGEST, PATIENCE), stalls, seed=stalls)
         self.datagrams, self.late, self.slow = datagrams, late, slow
         self.lookups: list[tuple[int, int]] = []
         self.bench.drive(self.write)
@@ -188,11 +188,3 @@ def test_a_datagram_begins_to_leave_six_cycles_after_its_end() -> None:
     box.bench.watch(look)
     box.check()
     assert times["valid"] - times["finish"] == 6  # the resolver here takes two cycles
-
-
-@pytest.mark.parametrize(("longest", "depth"), [(40, 24), (40, 8), (400, 64)])
-def test_a_ring_that_is_too_small_or_no_power_of_two_is_refused(longest: int, depth: int) -> None:
-    with pytest.raises(
-        ValueError, match=f"two places of {depth} words are no power of two, or too small for {longest}"
-    ):
-        Outbox(longest, depth)

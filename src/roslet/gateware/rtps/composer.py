@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import C, Cat, Module, Mux, Shape, Signal, signed
+from typing import Any
+
+from amaranth.hdl import C, Cat, Module, Mux, Shape, Signal, Value, signed
 from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -39,6 +41,12 @@ def subject_layout(peers: PeerMap, own: OwnMap, window: int = WINDOW) -> data.St
             "padding": 2,
         }
     )
+
+
+def writer_word(own: OwnMap, subject: Any, word: Value) -> Value:
+    """Where in our own memory that word of the subject's writer is: of ours for discovery, or of the user's."""
+    number = Mux(subject.builtin, subject.kind[0], subject.local)
+    return own.writer(number, word, subject.builtin)
 
 
 class Composer(wiring.Component):
@@ -125,8 +133,7 @@ class Composer(wiring.Component):
             with m.Case(Op.OWN.value & 3):
                 m.d.comb += self.own.addr.eq(argument)
             with m.Case(Op.WRITER.value & 3):
-                number = Mux(subject.builtin, subject.kind[0], subject.local)
-                m.d.comb += self.own.addr.eq(self._own.writer(number, do.word, subject.builtin))
+                m.d.comb += self.own.addr.eq(writer_word(self._own, subject, do.word))
             with m.Case(Op.SIZE.value & 3):
                 m.d.comb += self.own.addr.eq(subject.sample)
             with m.Case(Op.MESSAGE.value & 3):

@@ -17,9 +17,9 @@ Store = tuple[int, int, bool]
 class Loader(wiring.Component):
     """Makes the stores of a program, in order, once; from when `enable` is high on.
 
-    Ports: `index`, which word is wanted, and `word`, that word, in the next cycle or the one behind it, and zero from the
-    cycle after `done` on: it is `write.data` as it is, which is or-ed with others; `name_words`; `write`; `done`, high when
-    all is written, until the next reset. A store takes 4 cycles.
+    Ports: `index`, which word is wanted, and `word`, that word, within three cycles, and zero from the cycle
+    after `done` on: it is `write.data` as it is, which is or-ed with others; `name_words`; `write`; `done`, high when
+    all is written, until the next reset. A store takes 5 cycles.
     """
 
     def __init__(self, program: Sequence[Store], words: int, address_bits: int, name_bits: int) -> None:
@@ -61,6 +61,8 @@ class Loader(wiring.Component):
             with m.State("INDEX"):
                 m.next = "WORD"
             with m.State("WORD"):
+                m.next = "FOUND"
+            with m.State("FOUND"):
                 m.next = "WRITE"
             with m.State("WRITE"):
                 m.d.comb += [self.write.en.eq(1), self.write.addr.eq(address)]

@@ -11,7 +11,7 @@ from roslet.gateware.stream import FrameSignature
 
 
 class Outbox(wiring.Component):
-    """Two places of `depth` words together: a datagram is written in one while the one before is sent from the other.
+    """Two places of a power of two of words: a datagram is written in one while the one before is sent from the other.
 
     Ports: with `push` the word `word` is the next of: the address that a datagram goes to, the port, in the lower half of a
     word, and the datagram, of one word or more. `finish` is high for a cycle with the last word or after it. Then `busy` is
@@ -23,12 +23,9 @@ class Outbox(wiring.Component):
     behind waits no longer than that.
     """
 
-    def __init__(self, longest: int, depth: int = 512, patience: int = 17) -> None:
-        if depth & (depth - 1) or depth < 2 * ((longest + 3) // 4 + 1):
-            raise ValueError(
-                f"two places of {depth} words are no power of two, or too small for {longest} octets"
-            )
-        self._depth, self._patience = depth, patience
+    def __init__(self, longest: int, patience: int = 17) -> None:
+        words = -(-longest // 4)
+        self._depth, self._patience = 2 << words.bit_length(), patience
         super().__init__(
             {
                 "push": In(1),

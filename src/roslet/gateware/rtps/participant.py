@@ -94,7 +94,7 @@ class Participant(wiring.Component):
             "discovery": Discovery(peers, own, domain is not None),
             "turns": Turns(peers),
             "sender": Sender(self._rom, peers, own, len(writers), window),
-            "outbox": Outbox(most, 2 << (most // 4).bit_length()),
+            "outbox": Outbox(most),
         }
         self.drops = [
             (block, name)

@@ -9,7 +9,7 @@ from amaranth.hdl import C, Module, Mux, Signal, Value
 
 from roslet.gateware.octets import pick
 from roslet.gateware.rtps import tables
-from roslet.gateware.rtps.composer import age_shape
+from roslet.gateware.rtps.composer import age_shape, writer_word
 from roslet.gateware.rtps.rom import AFTERWARDS, DO, PUBLISHING, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
 
@@ -17,9 +17,9 @@ from roslet.gateware.rtps.tables import OwnMap, PeerMap
 class Sending:
     """Of the sender `sender`, whose ports it drives.
 
-    Numbers are known by their age, how far they are behind `last`, the writer's last: 0, it is the last; -1, the next; all
-    that are older than anything kept are `max_age` old. `subject.age` and `oldest`: of the message that is spoken of, and of
-    the oldest for who is served.
+    Numbers are known by their age, how far they are behind `last`, the writer's last: 0, it is the last; -1, the next; what
+    is older than anything kept has the greatest age there is. `subject.age` and `oldest`: of the message that is spoken of,
+    and of the oldest for who is served.
     """
 
     def __init__(self, m: Module, sender: Any, rom: Rom, peers: PeerMap, own: OwnMap, window: int) -> None:
@@ -45,7 +45,7 @@ class Sending:
         behind, later = Signal(33), Signal(DO)
         m.d.sync += [behind.eq(self.last - word), later.eq(do)]
         with m.If(do.store):
-            m.d.comb += [ports.write.en.eq(1), ports.write.addr.eq(self._writer_word(do.word))]
+            m.d.comb += [ports.write.en.eq(1), ports.write.addr.eq(writer_word(self.own, subject, do.word))]
         m.d.comb += ports.write.data.eq(word)
         with m.If(do.last):
             m.d.sync += self.last.eq(word)
@@ -86,10 +86,6 @@ class Sending:
         bits = self.age_shape.width - 1
         older = Mux(behind[bits:31].any(), (1 << bits) - 1, behind[:bits])
         return Mux(behind[31], C(-1, bits + 1), older).as_signed()
-
-    def _writer_word(self, word: Value) -> Value:
-        subject = self.subject
-        return self.own.writer(Mux(subject.builtin, subject.kind[0], subject.local), word, subject.builtin)
 
     def sample(self, number: Value) -> Value:
         """Where our writer keeps the message with this number."""

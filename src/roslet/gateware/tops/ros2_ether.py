@@ -9,6 +9,7 @@ from amaranth.lib.wiring import In, Out, connect
 
 from roslet.gateware.arbiter import FrameArbiter
 from roslet.gateware.config import Config, rtps_ports
+from roslet.gateware.fifo import FrameStage
 from roslet.gateware.gather import gather
 from roslet.gateware.meta import UDP_TX
 from roslet.gateware.rtps import tables
@@ -171,6 +172,7 @@ class Ros2Ether(EthernetUdp):
         # What it knows of others is forgotten with a reset; what it has been loaded with, meanwhile, is not.
         m.submodules.rtps = ResetInserter(~running)(rtps)
         m.submodules.udp_senders = senders = FrameArbiter(2, UDP_TX)
+        m.submodules.udp_register = datagrams = FrameStage(UDP_TX, late=True)
         m.d.sync += running.eq(loaded)
         for source, sink in (
             (stack.udp_rx, switch.i),
@@ -178,7 +180,8 @@ class Ros2Ether(EthernetUdp):
             (switch.o1, self._rx.i),
             (rtps.udp_tx, senders.i0),
             (self._tx.o, senders.i1),
-            (senders.o, stack.udp_tx),
+            (senders.o, datagrams.i),
+            (datagrams.o, stack.udp_tx),
             (rtps.lookup, stack.lookup0),
             (self._tx.lookup, stack.lookup1),
         ):
@@ -252,17 +255,19 @@ class Ros2Ether(EthernetUdp):
 
         name_words = Signal(7)
         m.submodules.loader = loader = Loader(program, len(words), own.address_bits, len(name_words))
-        loading = Signal.like(loader.index)
+        # From block RAM, and to another: both through a register.
+        loading, found = Signal.like(loader.index), Signal(32)
+        word = gather(m, words, loading | publisher.index)  # of which one is zero
         m.d.sync += [
             loading.eq(Mux(loader.done, 0, loader.index)),
+            found.eq(Mux(loader.done, 0, word)),
             name_words.eq((self.ros2_node_name_len + 3)[2:]),
         ]
-        word = gather(m, words, loading | publisher.index)  # which is zero before a message
         connect(m, loader.write, self._participant.own)
         connect(m, publisher.o, self._participant.publish0)
         m.d.comb += [
             loader.enable.eq(self.ros2pub_en | self.ros2sub_en),
-            loader.word.eq(Mux(loader.done, 0, word)),
+            loader.word.eq(found),
             loader.name_words.eq(name_words),
             loaded.eq(loader.done),
             publisher.word.eq(word),
