@@ -6,6 +6,7 @@ from amaranth.hdl import Cat, Const, Module, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
+from roslet.gateware.compare import above
 from roslet.gateware.ethernet import GROUP_BIT
 from roslet.gateware.meta import ADDRESSES, ETHERNET_RX
 from roslet.gateware.octets import octets, pick
@@ -81,7 +82,7 @@ class ArpRx(wiring.Component):
         message = self.message
         sender = Cat(message.mac, message.ip)
         at = self.place  # within the state's octets
-        in_ip = at[3] | (at[2] & at[1])  # MAC_SIZE or more
+        in_ip = above(at[:4], MAC_SIZE - 1)
         first = at == MAC_SIZE
         last = at == SENDER_SIZE - 1
         own = pick(octets(Value.cast(self.addresses.ip)), at[:2] ^ MAC_SIZE % IP_SIZE)

@@ -7,6 +7,7 @@ from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out
 
 from roslet.gateware.arp_rx import IP_SIZE, MAC_SIZE, SENDER_SIZE, fixed
+from roslet.gateware.compare import above
 from roslet.gateware.meta import ADDRESSES, ETHERNET_TX, HOP
 from roslet.gateware.multicast import BROADCAST
 from roslet.gateware.octets import octets, pick
@@ -67,7 +68,7 @@ class ArpTx(wiring.Component):
 
         at = Signal(6)  # what is read next
         place, in_sender, in_target = at[:4], at[4], at[5]
-        in_ip = place[3] | (place[2] & place[1])  # MAC_SIZE or more
+        in_ip = above(place, MAC_SIZE - 1)
         of_peer = replying & ~in_sender & (in_target | ~at[3])
         advance, over = Signal(), Signal()
         m.d.comb += [

@@ -7,6 +7,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
 from roslet.gateware import multicast
+from roslet.gateware.compare import above
 from roslet.gateware.header import HeaderReader, wire_order
 from roslet.gateware.meta import ADDRESSES, ETHERNET_RX, ETHERNET_TX, HOP
 from roslet.gateware.octets import octets, pick
@@ -57,7 +58,7 @@ class EthernetRx(wiring.Component):
         # The destination is compared as its octets pass; a header is longer than it, so that it is known by the body.
         i = self.i.stream
         at = reader.at
-        comparing = i.valid & ~(at[3] | (at[2] & at[1]))  # less than HOP
+        comparing = i.valid & ~above(at[:4], HOP - 1)
         group = Signal()
         with m.If(i.valid & (at == 0)):
             m.d.sync += group.eq(i.payload.data[GROUP_BIT])

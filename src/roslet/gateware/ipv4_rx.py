@@ -134,13 +134,11 @@ class Ipv4Rx(wiring.Component):
         still = {name: alike[name] & (same[name] | (octet == 0)) for name in alike}
         with m.If(passing("source") | passing("destination")):
             m.d.sync += [same[name].eq(still[name]) for name in alike]
-        with m.If(passing("source")):
-            with m.If(octet == 0):
-                m.d.sync += bad_source.eq(data[5:].all())
-            with m.If(octet == 3):
-                m.d.sync += bad_source.eq(bad_source | still["own"] | still["subnet"])
+        with m.If(passing("source") & (octet == 0)):
+            m.d.sync += bad_source.eq(data[5:].all())
         to_multicast, to_group = Signal(), Signal()
         with m.If(passing("destination") & (octet == 0)):
+            m.d.sync += bad_source.eq(bad_source | same["own"] | same["subnet"])  # the source was
             m.d.sync += to_multicast.eq(data[4:] == CLASS_D)
         m.d.comb += to_group.eq(to_multicast | same["limited"] | same["subnet"])
         to_us = to_group | (same["own"] & ~self.i.meta.group)

@@ -102,11 +102,11 @@ class Discovery(wiring.Component):
             m.d.sync += step.eq(0)
         with m.If(self.tick):
             m.d.sync += ticked.eq(1)
-        its = slot[: len(who)]
-        m.d.comb += who.eq(Mux(self.heard, self.heard_slot, its))
+        current = slot[: len(who)]
+        m.d.comb += who.eq(Mux(self.heard, self.heard_slot, current))
         for bits, number, rise, fall in (
             (self.matched, self._endpoint, self._joins, self._parts),
-            (self.alive, its, self._comes, self._goes),
+            (self.alive, current, self._comes, self._goes),
             (heard, who, self.heard | self._comes, silent),
         ):
             with m.If(rise | fall):
@@ -199,10 +199,10 @@ class Discovery(wiring.Component):
                     m.next = "SWEEP"
             with m.State("REMOVE"):  # the participant, and each of its endpoints
                 m.d.comb += [counts.eq(1), self._address.eq(peers.endpoint(step, tables.INFO))]
-                its = self.peers.data[tables.INFO_SLOT : tables.INFO_SLOT + len(slot)] == slot
+                is_its = self.peers.data[tables.INFO_SLOT : tables.INFO_SLOT + len(slot)] == slot
                 m.d.comb += self._goes.eq(1)
                 with m.If(step >= READ_LATENCY):
-                    m.d.comb += self._parts.eq(its)
+                    m.d.comb += self._parts.eq(is_its)
                     m.d.sync += self._endpoint.eq(self._endpoint + 1)
                 with m.If(step == peers.endpoints + READ_LATENCY - 1):
                     m.next = "PROCEED"

@@ -26,8 +26,6 @@ PL_CDR = 0x02
 LOOPBACK = 127
 GROUP = int.from_bytes(locator.SPDP_MULTICAST_ADDRESS, "little")
 """The group of all participants, as a word has it."""
-USER_GROUP_PORT = locator.user_multicast_port(0) - locator.metatraffic_multicast_port(0)
-"""How far behind the port of announcements that of messages to the group is. RTPS 2.3, 9.6.1.1."""
 
 _ROW = data.StructLayout(
     dict.fromkeys(
@@ -379,7 +377,7 @@ class Parameters(wiring.Component):
             is_group.eq(word == GROUP),
         ]
         user_group_port = Signal(16)
-        m.d.comb += user_group_port.eq(self.group_port + USER_GROUP_PORT)
+        m.d.comb += user_group_port.eq(self.group_port + tables.USER_GROUP_PORT)
         with m.If(v.second & v.last):
             m.d.sync += v.usable.eq(v.usable & ~v.high & Mux(act.group, v.number == user_group_port, v.any))
         flag, near = Mux(act.user, read.user, read.meta), v.near.bit_select(act.user, 1)

@@ -18,6 +18,8 @@ from dataclasses import dataclass
 
 from amaranth.hdl import Cat, Const, Value
 
+from roslet.wire.rtps import locator
+
 # A participant
 PREFIX, LEASE, META_IP, META_PORT, USER_IP, USER_PORT, LEFT = 0, 3, 4, 5, 6, 7, 8
 PARTICIPANT = 16
@@ -149,6 +151,8 @@ class Local:
 OWN_PREFIX, OWN_IP, META_PORT_OWN, USER_PORT_OWN, ZERO = 0, 3, 4, 5, 6
 GROUP_PORT_OWN, USER_GROUP_PORT_OWN = 7, 8
 OWN_WORDS = 16
+USER_GROUP_PORT = locator.user_multicast_port(0) - locator.metatraffic_multicast_port(0)
+"""How far behind the port of announcements that of messages to the group is. RTPS 2.3, 9.6.1.1."""
 # Of a writer: the number of its last message; how many before that are kept, -1 where there is none; and the count of the
 # heartbeats that it sends, and of the ACKNACKs of our reader with the same number: each needs one that rises, no more
 WRITER_LAST, WRITER_LAST_HI, WRITER_OLDEST, WRITER_COUNT = 0, 1, 2, 3
@@ -224,7 +228,10 @@ class OwnMap:
             for n in range(0, len(octets), 4):
                 words[self.own(at) + n // 4] = int.from_bytes(octets[n : n + 4], "little")
         words[self.own(META_PORT_OWN)], words[self.own(USER_PORT_OWN)] = meta_port, user_port
-        words[self.own(GROUP_PORT_OWN)], words[self.own(USER_GROUP_PORT_OWN)] = group_port, group_port + 1
+        words[self.own(GROUP_PORT_OWN)], words[self.own(USER_GROUP_PORT_OWN)] = (
+            group_port,
+            group_port + USER_GROUP_PORT,
+        )
         for number in range(len(self.writers)):
             words[self.writer_address(number, WRITER_OLDEST)] = NOTHING
         for reader, locals_ in enumerate((self.writers, self.readers)):

@@ -14,7 +14,6 @@ from roslet.gateware.gather import gather
 from roslet.gateware.meta import UDP_TX
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.loader import Loader, Store
-from roslet.gateware.rtps.parameters import USER_GROUP_PORT
 from roslet.gateware.rtps.participant import Participant
 from roslet.gateware.rtps.periods import BITS, PRESCALER_BITS, QUICK_PERIOD, Periods
 from roslet.gateware.rtps.rom import entity_id
@@ -245,7 +244,7 @@ class Ros2Ether(EthernetUdp):
 
         prefix = _split(self.ros2_guid_prefix)
         store(own.own(tables.OWN_PREFIX), *prefix, self.ip_addr, *ports[1:])
-        store(own.own(tables.GROUP_PORT_OWN), ports[0], ports[0] + USER_GROUP_PORT)
+        store(own.own(tables.GROUP_PORT_OWN), ports[0], ports[0] + tables.USER_GROUP_PORT)
         for reader, kind in enumerate(("pub", "sub")):
             for is_type, text in enumerate(("topic_name", "topic_type_name")):
                 port = getattr(self, f"ros2_{kind}_{text}")
