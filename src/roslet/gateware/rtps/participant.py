@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from amaranth.hdl import Module, Signal, Value
+from amaranth.hdl import Module, Mux, Signal, Value
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
@@ -236,14 +236,15 @@ class Participant(wiring.Component):
             discovery.keep.eq(in_bodies.as_value() | Value.cast(submessages.keep)),
         ]
         # In the cycle after, as what is written takes long; what discovery writes has waited, and what comes from outside
-        # does so while all others are held in reset. Of `later` and `other` one is zero.
+        # does so while all others are held in reset. One of the two is zero.
         for port, block, other in ((write, submessages, discovery.write), (ours, sender, self.own)):
-            for name in ("en", "addr", "data"):
+            enabled = Signal()
+            m.d.sync += enabled.eq(block.write.en)
+            m.d.comb += port.en.eq(enabled | other.en)
+            for name in ("addr", "data"):
                 later = Signal.like(getattr(port, name))
                 m.d.sync += later.eq(getattr(block.write, name))
-                with m.If(~block.write.en):
-                    m.d.sync += later.eq(0)
-                m.d.comb += getattr(port, name).eq(later | getattr(other, name))
+                m.d.comb += getattr(port, name).eq(Mux(enabled, later, 0) | getattr(other, name))
         # Block RAM gives anything of a word that is being written. Each side may read one of the other's: of peers it gets
         # the new. Of ours, where who receives looks at the same word for some cycles, it keeps what it had.
         for port, side, name in ((write, "sending", "peers"), (ours, "receiving", "own")):
