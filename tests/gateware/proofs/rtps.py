@@ -452,7 +452,7 @@ class ComposerSpec(Spec):
     so, before the message, and no other. `sent`: the first one, at its end. `over`: soon enough."""
 
     module = composer
-    quick, deep = 17, 26
+    quick, deep = 18, 27
     bugs = (
         Bug("count", "pushed[0].eq(in_message)", "pushed[0].eq(1)"),
         Bug("count", "there & ~(does & do.quiet)", "there"),
@@ -502,7 +502,7 @@ class ComposerSpec(Spec):
             Assert(~dut.do.store | (running & ~second & ~stored & ~dut.push & (count == 2)), "stored"),
             Assert(~(running & dut.done & ~second) | stored, "stored"),
             Assert(dut.send == (dut.done & ~second), "sent"),
-            Assert(cycles <= needs + 8, "over"),
+            Assert(cycles <= needs + 9, "over"),
             Cover(running & dut.done & ~second & (words == 2), "message"),
         ]
 

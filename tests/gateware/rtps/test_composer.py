@@ -168,7 +168,7 @@ def test_declared_lengths_are_emitted_lengths_and_a_word_comes_each_cycle(
     assert count == rom.size[name] + (3 - 1 if has_message else 0)
     items = template(name)
     first = next(n for n, item in enumerate(items) if not has(item, "quiet"))
-    assert one.times[0] == 6 + first
+    assert one.times[0] == 7 + first
     quiet = sum(has(item, "quiet") for item in items[first:-1])
     assert one.times[-1] - one.times[0] == len(one.pushed) - 1 + quiet + (
         has_message and items[-2][0] != Op.MESSAGE

@@ -56,7 +56,7 @@ class Composer(wiring.Component):
     Ports: `subject`, steady until `done` but for what is taken for it; `borrow`, the lower word of the number that is asked
     for is above that of the last; `peers` and `own`, read ports, of which `hide_peers` and `hide_own` say a cycle later that
     zero shall be given for what lies there; `word`, which `push` says is to be written, and `do` what else: it is zero
-    otherwise. The first word comes 6 cycles after `start`. What takes the words must have room for all. In the cycle of
+    otherwise. The first word comes 7 cycles after `start`. What takes the words must have room for all. In the cycle of
     the last, or the one or two after it, `done` is high, with what comes then in `do.then`, and `send` if they are a
     datagram. Up to `window` messages are asked for at once.
     """
@@ -89,6 +89,9 @@ class Composer(wiring.Component):
         )
         read = rom.read_port()
         subject = self.subject
+        # Who says where has thought about it for most of a cycle.
+        at, load, start = Signal.like(self.at), Signal(), Signal()
+        m.d.sync += [at.eq(self.at), load.eq(self.load), start.eq(self.start)]
         here = Signal(range(len(self._rom.words)))  # what the ROM looks at
         # Of the template: a word comes from the ROM, then it is in `item`, then what it refers to is read, and is added to.
         running, coming, there = Signal(), Signal(), Signal()
@@ -110,9 +113,9 @@ class Composer(wiring.Component):
             m.d.sync += [item.eq(read.data), coming.eq(running), there.eq(coming)]
             with m.If(running):
                 m.d.sync += here.eq(here + 1)
-        with m.If(self.load):
-            m.d.sync += here.eq(self.at * ALIGNMENT)
-        with m.If(self.start):
+        with m.If(load):
+            m.d.sync += here.eq(at * ALIGNMENT)
+        with m.If(start):
             m.d.sync += [running.eq(1), word.eq(0)]
         with m.If(last):
             m.d.sync += [running.eq(0), coming.eq(0), there.eq(0)]
