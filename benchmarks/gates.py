@@ -8,7 +8,7 @@ size     LUTs, flip-flops, block RAMs and MHz on ECP5, speed grade 6, routed: `R
 echo     the example typed-echo, pin to pin: from the last nibble of a Coordinate on `ping` to the first of the preamble of
          the one on `pong`, N times (1,000 unless told otherwise), each at any moment of an idle node
 latency  the manual's node with the user logic of topic-pub-sub: from `ros2_pub_app_data_rel` to the first nibble of the
-         preamble, and from the last nibble of a message to `ros2_sub_app_data_recv`; a tenth of N each
+         preamble, and from the last nibble of a message to `ros2_sub_app_data_recv`, N of each
 publish  messages of 64 octets, published as quickly as the node takes them: how much of the wire they fill
 
 Times are of the simulated design with `clk` of 100 MHz and a PHY of 100 Mbit/s, to a cycle of the PHY's: they are the same
@@ -363,7 +363,7 @@ def main() -> None:
     roslet.load(EXAMPLES / "msgs" / "mros_comm_measure")
     run: dict[str, Callable[[], Any]] = {
         "echo": lambda: echo(arguments.messages),
-        "latency": lambda: latency(max(1, arguments.messages // 10)),
+        "latency": lambda: latency(arguments.messages),
         "publish": lambda: publish(arguments.messages),
         "size": lambda: size(arguments.designs),
     }
