@@ -64,8 +64,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         "build",
         run_build,
         "write a design as Verilog, or place and route it",
-        "roslet gateware build --top ros2_ether --target verilog --output out\n"
-        "roslet gateware build --top ros2_ether --config my_headers --target verilog --output out\n"
+        "roslet gateware build --top ros2_ether --output out\n"
+        "roslet gateware build --top ros2_ether --config my_headers --output out\n"
         "roslet gateware build udp-tx-rx --target ecp5 --output out\n"
         "roslet gateware build udp-tx-rx --target arty-a7 --output out && vivado -mode batch -source out/arty_a7.tcl",
         "json",
@@ -91,7 +91,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="a header of the manual, or a folder of them, whose constants are those of the design (may be repeated)",
     )
-    build.add_argument("--target", choices=TARGETS, required=True, help="what for")
+    build.add_argument(
+        "--target", choices=TARGETS, default=TARGETS[0], help=f"what for (default {TARGETS[0]})"
+    )
     build.add_argument("--output", metavar="DIR", required=True, type=pathlib.Path, help="where the files go")
     build.add_argument(
         "--phy", choices=sorted(PHY_MHZ), default="mii", help="what the PHY speaks (default mii)"
