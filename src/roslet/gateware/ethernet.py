@@ -75,26 +75,26 @@ class EthernetRx(wiring.Component):
             with m.If(comparing):
                 m.d.sync += bit.eq((i.payload.data == octet) & Mux(at == 0, valid, bit))
 
-        o = reader.o
-        source, type_ = o.meta.header.source, Value.cast(o.meta.header.type)
-        arp, ipv4 = type_ == ethernet.ARP, type_ == ethernet.IPV4
-        ours = same.any()
-        for port, chosen in ((self.arp, ours & arp), (self.ipv4, ours & ipv4)):
+        # Whose frame it is is known with the last octet of the type, of which the other is still in its place.
+        o, ours = reader.o, same.any()
+        type_ = Cat(i.payload.data, Value.cast(o.meta.header.type)[:8])
+        chosen = Signal(2)
+        ports = (self.arp, self.ipv4)
+        for mine, port, known in zip(chosen, ports, (ethernet.ARP, ethernet.IPV4), strict=True):
+            with m.If(at != ethernet.SIZE):
+                m.d.sync += mine.eq(ours & (type_ == known))
             m.d.comb += [
-                port.meta.source.eq(source),
+                port.meta.source.eq(o.meta.header.source),
                 port.meta.group.eq(group),
                 port.stream.payload.eq(o.stream.payload),
-                port.stream.valid.eq(o.stream.valid & chosen),
+                port.stream.valid.eq(o.stream.valid & mine),
             ]
         ended = o.stream.valid & o.stream.payload.end & ~o.stream.payload.bad
-        with m.If(~ours):
-            m.d.comb += [o.stream.ready.eq(1), self.drop_address.eq(ended)]
-        with m.Elif(arp):
-            m.d.comb += o.stream.ready.eq(self.arp.stream.ready)
-        with m.Elif(ipv4):
-            m.d.comb += o.stream.ready.eq(self.ipv4.stream.ready)
-        with m.Else():
-            m.d.comb += [o.stream.ready.eq(1), self.drop_type.eq(ended)]
+        m.d.comb += [
+            o.stream.ready.eq(~(chosen & ~Cat(port.stream.ready for port in ports)).any()),
+            self.drop_address.eq(ended & ~ours),
+            self.drop_type.eq(ended & ours & ~chosen.any()),
+        ]
         return m
 
 

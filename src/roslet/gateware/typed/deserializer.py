@@ -106,7 +106,7 @@ class Deserializer(wiring.Component):
                         store.eq(run & ~position.pads),
                     ]
                     with m.If(store):
-                        program.advance(count)
+                        program.advance(count, count == 0)
                         with m.If(over | bad_text):
                             m.d.sync += too_long.eq(over)
                             m.next = "DROP"

@@ -93,8 +93,9 @@ class Program:
         at_least = [C(1, 1), four | left[1], four | (left[1] & left[0]), four, ~self.last]
         return [Mux(self.is_text, at_least[lane + 1], at_least[lane]) for lane in range(WORD)]
 
-    def advance(self, count: Value) -> None:
-        """Go on to the next step, `count` being what a COUNT has; called within the condition that the step is done."""
+    def advance(self, count: Value, none: Value) -> None:
+        """Go on to the next step, `count` being what a COUNT has, and `none` whether that is zero; called within the
+        condition that the step is done."""
         m, steps = self.m, self.steps
         jump = self.column([step.jump for step in steps], COUNT, CONTENT, LOOP)
         leaves = Signal()
@@ -103,7 +104,7 @@ class Program:
             m.d.comb += leaves.eq(self.last)
             m.d.sync += self._left.eq(self._left - WORD)
         with m.If(self.is_count):
-            m.d.comb += leaves.eq(count == 0)
+            m.d.comb += leaves.eq(none)
             scales = sorted({step.scale for step in steps if step.kind == COUNT and step.level is None})
             if scales:
                 row = [scales.index(step.scale) if step.scale in scales else 0 for step in steps]

@@ -64,14 +64,14 @@ class Serializer(wiring.Component):
             i.ready.eq(run & ends),
             self.drop_bound.eq(run & ends & refused),
         ]
-        word, count, over = self._word(m, program, position.pads)
+        word, count, none, over = self._word(m, program, position.pads)
         with m.If(step):
             with m.If(program.ended):
                 m.d.sync += [program.at.eq(0), refused.eq(0)]
             with m.Elif(over):
                 m.d.sync += [program.at.eq(program.end), refused.eq(1)]
             with m.Else():
-                program.advance(count)
+                program.advance(count, none)
 
         item = Signal(ITEM)
         with m.If(free):
@@ -85,8 +85,9 @@ class Serializer(wiring.Component):
         (self._words if plan.aligned else self._shifted)(m, item, full, free, position)
         return m
 
-    def _word(self, m: Module, program: Program, pads: Value) -> tuple[Value, Value, Value]:
-        """The octets of the step, or zeros if `pads`; of a COUNT what it has, and whether that is over the bound."""
+    def _word(self, m: Module, program: Program, pads: Value) -> tuple[Value, Value, Value, Value]:
+        """The octets of the step, or zeros if `pads`; of a COUNT what it has, whether that is zero, and whether it is over
+        the bound."""
         steps = self.plan.steps
         rows: list[Value] = []
         for one in steps:
@@ -100,12 +101,14 @@ class Serializer(wiring.Component):
             bits = max(one.bound.bit_length() for one in counts)
             bound = program.column([one.bound for one in steps], COUNT)
             m.d.comb += over.eq(program.is_count & (raw[:bits] > bound))
+        low = program.count_bits
+        none = raw[:low] == 0
         if any(one.text for one in counts):  # the NUL is counted
-            low = program.count_bits
             m.d.comb += word[:low].eq(raw[:low] + (program.is_count & program.is_text))
+            none &= ~program.is_text  # not by the sum, which is late
         sent = [(real | ~program.is_content) & ~pads for real in program.real()]
         masked = [Mux(one, octet, 0) for one, octet in zip(sent, octets(word), strict=True)]
-        return Cat(*masked), word[: program.count_bits], over
+        return Cat(*masked), word[:low], none, over
 
     def _octets(self, step: Step) -> Value:
         lanes: list[Value] = [C(0, 8)] * WORD
