@@ -126,7 +126,7 @@ class IpStack(wiring.Component):
         if self.memory:
             m.submodules.datagrams = both = FrameArbiter(2, IPV4_RX)
             self._join(m, "fragments", IPV4_FRAGMENT, received.fragments, reassembly.i)
-            self._join(m, "received", IPV4_RX, received.o, both.i0)
+            self._join(m, "received", IPV4_RX, received.o, both.i0, cut=True)
             connect(m, reassembly.o, both.i1)
             datagrams = both.o
             expose(m, reassembly, self, self.memory)

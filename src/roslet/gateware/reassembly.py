@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import pairwise
 
-from amaranth.hdl import Cat, Module, Mux, Signal, Value
+from amaranth.hdl import C, Cat, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import bits_for
@@ -273,7 +273,8 @@ class Reassembly(wiring.Component):
         # -- the memory
 
         at = Signal(range(self._room + 1))
-        following = Signal.like(at)
+        following = Signal.like(at)  # one more
+        to_following = [at.eq(following), following.eq(following + 1)]
         total = Signal.like(at)
         base = Signal(range(self.depth))
         with m.Switch(chosen):
@@ -283,7 +284,6 @@ class Reassembly(wiring.Component):
         advance, fetched, has_octet = Signal(), Signal(), Signal()
         octet = Signal(8)  # since block RAM is slow to show what it has
         m.d.comb += [
-            following.eq(at + 1),
             mem.addr.eq(base + Mux(advance, following, at)),
             mem.wdata.eq(i.payload.data),
             o.payload.data.eq(octet),
@@ -329,7 +329,7 @@ class Reassembly(wiring.Component):
                     m.next = "DECIDE"
             with m.State("DECIDE"):
                 known = of_chosen(lambda slot: slot.known)
-                m.d.sync += at.eq(fragment.offset << _UNIT)
+                m.d.sync += [at.eq(fragment.offset << _UNIT), following.eq(Cat(C(1, _UNIT), fragment.offset))]
                 with m.If(known & of_chosen(lambda slot: slot.given_up)):
                     drop("given_up")
                 with m.Elif(wrong_size):
@@ -354,11 +354,11 @@ class Reassembly(wiring.Component):
                     m.next = "IDLE"
                 with m.Elif(i.valid):
                     m.d.comb += [mem.ce.eq(1), mem.we.eq(1)]
-                    m.d.sync += at.eq(following)
+                    m.d.sync += to_following
             with m.State("STORED"):
                 m.next = "JUDGE"
             with m.State("JUDGE"):
-                m.d.sync += [at.eq(0), fetched.eq(0), has_octet.eq(0)]
+                m.d.sync += [at.eq(0), following.eq(1), fetched.eq(0), has_octet.eq(0)]
                 with m.If(of_chosen(lambda slot: slot.complete)):
                     m.next = "REPLAY"
                 with m.Else():
@@ -372,7 +372,7 @@ class Reassembly(wiring.Component):
                 ]
                 m.d.sync += fetched.eq(1)
                 with m.If(advance):
-                    m.d.sync += [at.eq(following), octet.eq(mem.rdata), has_octet.eq(1)]
+                    m.d.sync += [*to_following, octet.eq(mem.rdata), has_octet.eq(1)]
                     with m.If(following == total):
                         m.d.comb += mem.ce.eq(0)
                         m.next = "LAST"

@@ -277,7 +277,7 @@ class ParametersSpec(Spec):
             'with m.Elif(ended):\n                    m.next = "MALFORMED"',
             'with m.Elif(ended):\n                    m.next = "DONE"',
         ),
-        Bug("done", "length[2:] == 0", "length[3:] == 0"),
+        Bug("done", "passed[2:] == 0", "passed[3:] == 0"),
         Bug("stays", "i.ready.eq(self.proceed | i.payload.bad)", "i.ready.eq(1)"),
         Bug("told", "self.drop_malformed.eq(ended & ~i.payload.bad)", "self.drop_malformed.eq(0)"),
         Bug(

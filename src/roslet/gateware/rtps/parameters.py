@@ -208,6 +208,7 @@ class Parameters(wiring.Component):
         v = _Passing(self.locals)
         v.octets(m, word)
         length = Signal(16)  # of the value; in words, and two bits, what is left of it
+        none = Signal()  # no word is
         m.d.sync += v.step.eq(v.step + came)
         with m.If(v.last):
             m.d.sync += v.step.eq(0)
@@ -239,7 +240,8 @@ class Parameters(wiring.Component):
                 of_id = v.step[1] == v.little
                 m.d.comb += [v.shifts.eq(of_id), v.last.eq(v.step == LAST), i.ready.eq(came & v.last)]
                 with m.If(v.passes & ~of_id):
-                    m.d.sync += length.eq(Cat(v.octet, length[:8]))
+                    passed = Cat(v.octet, length[:8])
+                    m.d.sync += [length.eq(passed), none.eq(passed[2:] == 0)]
                 known = v.number[_ID_BITS:] == row.data.must << 14 - _ID_BITS
                 m.d.sync += [v.act.eq(row.data), v.known.eq(known & row.data.known)]
                 m.d.sync += v.must.eq(v.number[14] & ~v.number[15])
@@ -254,7 +256,7 @@ class Parameters(wiring.Component):
                     m.next = "REST"
                 with m.Elif(length[:2] != 0):
                     m.next = "MALFORMED"
-                with m.Elif(length[2:] == 0):
+                with m.Elif(none):
                     m.next = "PARAMETER"
                     with m.If(~v.over & ~(v.partial & (v.number[:2] == 0))):
                         m.next = "MALFORMED"
@@ -288,7 +290,7 @@ class Parameters(wiring.Component):
         with m.If(i.valid & i.ready):
             m.d.sync += [v.at.eq(v.at + 1), v.first.eq(0), v.second.eq(v.first)]
         with m.If(fsm.ongoing("VALUE") & i.valid & i.ready):
-            m.d.sync += length[2:].eq(length[2:] - 1)
+            m.d.sync += [length[2:].eq(length[2:] - 1), none.eq(length[2:] == 1)]
         with m.If(fsm.ongoing("PARAMETER")):
             m.d.sync += [v.at.eq(0), v.first.eq(1), v.second.eq(0), v.over.eq(1)]
         with m.If(fsm.ongoing("IDLE")):

@@ -161,21 +161,22 @@ class Submessages(wiring.Component):
         m.d.sync += kept.eq(asked.data)
         # It is compared with what `peers` gives, the low words first. In JUDGE it is the number that is wanted, or before
         # it; what is wanted is known; and the low word was compared with LAST, too. The same subtraction makes what is put,
-        # `kept` + `summand` + `carry`: where `peers` gives ones, it is of -1 - `summand`, and of one more without `carry`.
+        # `kept` + `summand`: where `peers` gives ones, it is of -1 - `summand`, and of one more with `lends`. What is put is
+        # one higher without that, as is a high word, `put_high`, that the low one carries to.
         ones = Signal(6)  # that the set of a GAP begins with
         nothing_asked = Signal()  # by an ACKNACK
-        put_low, put_high = Signal(), Signal()
-        putting, carry = Signal(), Signal()
+        putting, lends, put_high = (Signal() for _ in range(3))
         total, borrowed, difference, carried = Signal(32), Signal(), Signal(32), Signal()
         equal, begun = Signal(), Signal()
         same, behind, known = Signal(), Signal(), Signal()
         summand = Signal(8)
         m.d.comb += [
-            carry.eq(
-                (put_low & (is_data | (is_heartbeat & second))) | (put_high & (carried | nothing_asked))
-            ),
             Cat(Signal(), total, borrowed).eq(
-                Cat(C(0, 1), kept) - Cat(putting & ~carry, self.peers.data & ~Cat(summand, C(0, 24)))
+                Cat(C(0, 1), kept)
+                - Cat(
+                    lends | (put_high & ~carried & ~nothing_asked),
+                    self.peers.data & ~Cat(summand, C(0, 24)),
+                )
             ),
             equal.eq(difference == 0),
         ]
@@ -183,6 +184,8 @@ class Submessages(wiring.Component):
             Cat(difference, carried).eq(Cat(total, ~borrowed)),
             same.eq(equal & (same | begun)),
             behind.eq(~carried | (equal & behind & ~begun)),
+            lends.eq(0),
+            put_high.eq(0),
         ]
 
         # A word of the proxy is read or written
@@ -368,7 +371,7 @@ class Submessages(wiring.Component):
                 with m.If(step[1]):
                     m.d.sync += known.eq((known & step[0]) | (self.peers.data != 0))
                 with m.If(step == 4):
-                    m.d.sync += step.eq(0)
+                    m.d.sync += [step.eq(0), lends.eq(1)]
                     m.next = "JUDGE"
                     with m.If(is_gap):
                         m.next = "JUDGE GAP"
@@ -424,14 +427,15 @@ class Submessages(wiring.Component):
                     self.fill_peers.eq(1),
                     high.eq((step == 1) & ~is_acknack),
                     putting.eq(step[1] | (step[0] & is_acknack)),
-                    put_low.eq(step == 2),
-                    put_high.eq(step == 3),
                     what.eq(Mux(step[1], Cat(step[0], C(2, 2)), tables.LAST)),
                 ]
                 m.d.sync += [
                     step.eq(step + 1),
-                    summand.eq(Mux(step[0], ones, skip)),
-                ]  # of a GAP, of an ACKNACK
+                    summand.eq(Mux(step[0], ones, skip)),  # of a GAP, of an ACKNACK
+                    # A first number is put as it is, and a DATA's or a heartbeat's last one higher.
+                    lends.eq((step == 0) | ((step == 1) & ~is_data & ~(is_heartbeat & second))),
+                    put_high.eq(step == 2),
+                ]
                 with m.If(step[1]):
                     m.d.sync += summand.eq(0)
                 with m.If(step == 3):
