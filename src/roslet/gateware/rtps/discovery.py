@@ -227,11 +227,12 @@ class Discovery(wiring.Component):
         low, high = self._less | self._everything, self._less | self._before_all
         more = Cat(low | self._one, low.replicate(middle - 1), (low | high).replicate(31 - middle), high)
         en, target, beside = Signal(), Signal.like(self._target), Signal.like(self._beside)
-        passed, copied = Signal(32), Signal(32)
+        read, added, copied = (Signal(32) for _ in range(3))
         m.d.sync += [en.eq(self._writes), beside.eq(self._beside)]
         for register, value, meant in (
             (target, self._target, self._writes),
-            (passed, self.peers.data + more, self._passes),
+            (read, self.peers.data, self._passes),
+            (added, more, self._passes),
             (copied, self.own.data, self._copies),
         ):
             m.d.sync += register.eq(value)
@@ -240,7 +241,7 @@ class Discovery(wiring.Component):
         m.d.comb += [
             self.write.en.eq(en | kept.en),
             self.write.addr.eq(target | kept.addr),
-            self.write.data.eq(passed | copied | kept.data | beside),
+            self.write.data.eq(read + added | copied | kept.data | beside),
         ]
 
     def _write(self, m: Module, target: Value, *what: Signal, when: Value | int = 1) -> None:

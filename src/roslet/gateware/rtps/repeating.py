@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import C, Module, Mux, Value
+from amaranth.hdl import C, Module, Mux, Signal, Value
 
 from roslet.gateware.rtps.sending import Sending
 
@@ -13,24 +13,29 @@ def repeat(m: Module, work: Sending, asked: Value, writers: Value, readers: Valu
     """
     subject, start_of = work.subject, work.rom.start
     age, oldest = subject.age, subject.oldest
+    # Ages are compared a cycle before they are looked at; when one has changed they are not `settled` in the next.
+    lost, beyond, settled = Signal(), Signal(), Signal()
+    m.d.sync += [lost.eq(age > oldest), beyond.eq(age < work.ask_to), settled.eq(1)]
     with m.State("READER"):
+        m.d.sync += settled.eq(0)
         with m.If(work.start < oldest):
             m.d.sync += oldest.eq(work.start)
         m.next = "JUDGE"
-    with m.State("JUDGE"):
+    with m.State("JUDGE"), m.If(settled):
         m.next = "IDLE"
         with m.If(asked):
             m.next = "REPEAT"
-            with m.If((age > oldest) & (age >= work.ask_to) & ~subject.builtin):
+            with m.If(lost & ~beyond & ~subject.builtin):
                 work.compose(m, start_of["gap"])
         with m.Elif(work.unacknowledged):
             m.next = "HEARTBEAT"
     with m.State("REPEAT"):
-        with m.If(age > oldest):
+        m.d.sync += settled.eq(0)
+        with m.If(lost):
             m.d.sync += age.eq(oldest)
         m.next = "AGAIN"
-    with m.State("AGAIN"):
-        with m.If(age < work.ask_to):  # nothing more is asked for
+    with m.State("AGAIN"), m.If(settled):
+        with m.If(beyond):  # nothing more is asked for
             m.next = "HEARTBEAT"
         with m.Elif(subject.builtin):
             m.d.sync += subject.local.eq(oldest - age)
@@ -50,7 +55,7 @@ def repeat(m: Module, work: Sending, asked: Value, writers: Value, readers: Valu
     with m.State("NEXT"):
         m.next = published
         with m.If(~work.publishing):
-            m.d.sync += age.eq(age - 1)
+            m.d.sync += [age.eq(age - 1), settled.eq(0)]
             m.next = "AGAIN"
     with m.State("HEARTBEAT"):
         work.compose(m, work.by_kind("heartbeat"))
