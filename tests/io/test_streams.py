@@ -86,7 +86,7 @@ def test_bytes_go_in_and_out(loop: Reactor) -> None:
     flush(loop, stream)
     assert far.recv(10) == b"pong"
     far.close()
-    assert loop.run_until(lambda: stream.closed, 2)
+    assert loop.run_until(lambda: machine.lost_for, 2)
     assert machine.lost_for == "closed by the peer"
 
 
@@ -115,7 +115,7 @@ def test_closing_waits_for_the_rest_but_not_for_ever(loop: Reactor, monkeypatch:
     machine.closing = True
     flush(loop, stream)
     assert not stream.closed
-    assert loop.run_until(lambda: stream.closed, 2)
+    assert loop.run_until(lambda: machine.lost_for, 2)
     assert machine.lost_for == "closed; the peer did not read the rest"
 
 
@@ -153,7 +153,7 @@ def test_a_peer_that_closes_its_half_still_gets_the_answer(loop: Reactor) -> Non
     while part := far.recv(1 << 16):
         got += len(part)
     assert got == len(machine.answer)
-    loop.run_until(lambda: stream.closed, 5, user=False)
+    loop.run_until(lambda: machine.lost_for, 5, user=False)
     assert stream.closed and told[-1] is stream and machine.lost_for == "closed"
     far.close()
 
@@ -162,9 +162,9 @@ def test_a_peer_that_closes_its_half_and_does_not_read_is_given_up(
     loop: Reactor, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(streams, "LAST_WORDS", 0.1)
-    machine, stream, far, _ = pair(loop, Answering())
+    machine, _, far, _ = pair(loop, Answering())
     far.shutdown(socket.SHUT_WR)
-    loop.run_until(lambda: stream.closed, 5, user=False)
+    loop.run_until(lambda: machine.lost_for, 5, user=False)
     assert "did not read" in machine.lost_for
     far.close()
 
@@ -174,7 +174,7 @@ def test_a_slip_in_a_machine_ends_its_connection_and_no_other(loop: Reactor) -> 
     other, _, other_far, _ = pair(loop)
     far.sendall(b"boom")
     with suppress(RuntimeError):  # or the background thread prints it
-        loop.run_until(lambda: stream.closed, 2)
+        loop.run_until(lambda: machine.lost_for, 2)
     assert stream.closed and machine.lost_for == "internal error"
     other_far.sendall(b"fine")
     assert loop.run_until(lambda: other.got == b"fine", 2)
@@ -314,6 +314,6 @@ def test_a_broken_connection_is_closed_once(loop: Reactor) -> None:
     for _ in range(5):
         stream.try_send(b"x")
     assert stream.broken
-    assert loop.run_until(lambda: stream.closed, 2)
+    assert loop.run_until(lambda: machine.lost_for, 2)
     loop.run_until(lambda: False, 0.05)
     assert len(told) == 1 and machine.lost_for

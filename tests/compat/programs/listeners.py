@@ -5,12 +5,17 @@ from std_msgs.msg import String
 
 
 class Greeter(rospy.SubscribeListener):
+    there = False
+
     def peer_subscribe(self, topic_name, topic_publish, peer_publish):
+        self.there = True
         print("a peer subscribed to topic [%s]" % topic_name, flush=True)
         peer_publish(String("welcome"))
 
     def peer_unsubscribe(self, topic_name, num_peers):
-        print("a peer unsubscribed from topic [%s], %d left" % (topic_name, num_peers), flush=True)
+        if self.there:  # rospy says so twice where two of its threads see it go
+            print("a peer unsubscribed from topic [%s], %d left" % (topic_name, num_peers), flush=True)
+        self.there = False
 
 
 rospy.init_node("listeners")

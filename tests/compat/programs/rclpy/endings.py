@@ -81,7 +81,7 @@ try:
 except KeyboardInterrupt:
     ended.set()
     end = time.monotonic() + 5
-    while how == "SIGINT in a callback" and rclpy.ok() and time.monotonic() < end:
+    while how in ("SIGINT in a callback", "SIGINT of threads") and rclpy.ok() and time.monotonic() < end:
         time.sleep(0.01)  # the handler has another thread shut down
     print("KeyboardInterrupt", rclpy.ok())
 except ExternalShutdownException:
