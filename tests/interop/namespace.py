@@ -5,17 +5,20 @@ A Namespace has loopback and nothing else, until `connect` lays a cable between 
 
 from __future__ import annotations
 
+import json
 import os
 import pathlib
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from types import TracebackType
 from typing import IO, Any
 
 import pytest
 
+PATIENCE = 90.0
 _ROUTE = "ip link set lo multicast on && ip route add 239.0.0.0/8 dev lo"
 
 
@@ -54,6 +57,24 @@ class Program:
         """Its lines, when it has ended by itself."""
         assert self.process.wait(seconds) == 0, self.errors.read_text()
         return self.lines()
+
+
+def last(program: Program) -> dict[str, Any]:
+    """The last whole line of JSON that a program printed."""
+    lines = [line for line in program.lines() if line.startswith("{") and line.endswith("}")]
+    found: dict[str, Any] = json.loads(lines[-1]) if lines else {}
+    return found
+
+
+def wait(
+    program: Program, what: str, seen: Callable[[dict[str, Any]], bool], seconds: float = PATIENCE
+) -> dict[str, Any]:
+    """That, as soon as `seen` holds for it."""
+    end = time.monotonic() + seconds
+    while not (said := last(program)) or not seen(said):
+        assert time.monotonic() < end, f"{program.name}: {what}: not within {seconds:g} s: {said}"
+        time.sleep(0.05)
+    return said
 
 
 class Piped:

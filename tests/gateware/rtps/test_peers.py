@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import pathlib
 import re
@@ -16,7 +15,7 @@ from typing import Any
 import pytest
 
 import peers
-from interop.namespace import Namespace, Program
+from interop.namespace import PATIENCE, Namespace, Program, last, wait
 
 pytestmark = [
     pytest.mark.skipif(os.geteuid() != 0, reason="only root makes TAP devices"),
@@ -26,7 +25,6 @@ pytestmark = [
 HERE = pathlib.Path(__file__).parent
 SECONDS = 900
 """How long a simulation may live; it is ended before."""
-PATIENCE = 90.0
 PROGRAMS = {"kilted": "gates_rclpy.py", "jazzy": "gates_rclpy.py", "cyclone": "gates_cyclone.py"}
 
 
@@ -86,24 +84,6 @@ class Gates:
         self, what: str, seen: Callable[[dict[str, Any]], bool], seconds: float = PATIENCE
     ) -> dict[str, Any]:
         return wait(self.program, what, seen, seconds)
-
-
-def last(program: Program) -> dict[str, Any]:
-    """The last whole line that a program said."""
-    lines = [line for line in program.lines() if line.startswith("{") and line.endswith("}")]
-    found: dict[str, Any] = json.loads(lines[-1]) if lines else {}
-    return found
-
-
-def wait(
-    program: Program, what: str, seen: Callable[[dict[str, Any]], bool], seconds: float = PATIENCE
-) -> dict[str, Any]:
-    """What it says as soon as that holds."""
-    end = time.monotonic() + seconds
-    while not (said := last(program)) or not seen(said):
-        assert time.monotonic() < end, f"{program.name}: {what}: not within {seconds:g} s: {said}"
-        time.sleep(0.05)
-    return said
 
 
 @pytest.fixture(scope="module")

@@ -371,7 +371,7 @@ class Submessages(wiring.Component):
                 with m.If(step[1]):
                     m.d.sync += known.eq((known & step[0]) | (self.peers.data != 0))
                 with m.If(step == 4):
-                    m.d.sync += [step.eq(0), lends.eq(1)]
+                    m.d.sync += [step.eq(0), lends.eq(1)]  # a heartbeat's last is put next, as it is
                     m.next = "JUDGE"
                     with m.If(is_gap):
                         m.next = "JUDGE GAP"
