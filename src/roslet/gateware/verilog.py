@@ -1,4 +1,5 @@
-"""The module `ros2_ether` in Verilog: the manual's ports and parameters around what Amaranth made; and its headers, read."""
+"""Nodes in Verilog. The module `ros2_ether`: the manual's ports and parameters around what Amaranth made; and its headers,
+read. A node with typed ports, and the header that says what they are."""
 
 from __future__ import annotations
 
@@ -13,6 +14,7 @@ from amaranth.lib.wiring import Out
 from roslet.gateware.config import Config, ros2_config_vh, ros2_ether_config_vh
 from roslet.gateware.toolchain import write_verilog
 from roslet.gateware.tops.ros2_ether import Ros2Ether
+from roslet.gateware.tops.ros_node import RosNode
 
 NAME = "ros2_ether"
 HEADERS = {"ros2_config.vh": ros2_config_vh, "ros2_ether_config.vh": ros2_ether_config_vh}
@@ -60,6 +62,22 @@ def write_ros2_ether(top: Ros2Ether, folder: pathlib.Path) -> list[str]:
     for file, header in HEADERS.items():
         (folder / file).write_text(header(config), encoding="utf-8")
     return [f"{NAME}.v", *HEADERS]
+
+
+def write_ros_node(top: RosNode, name: str, folder: pathlib.Path) -> list[str]:
+    """Write `name`.v, a module `name` with a port for each field of the node's messages, and `name`.vh, which documents
+    these; their names. Raises ValueError where the node was not made with `flat`."""
+    if len(top.texts) != len(top.topics):
+        raise ValueError(
+            "the topics of this node are streams; RosNode(..., flat=True) has a port for each field"
+        )
+    folder.mkdir(parents=True, exist_ok=True)
+    write_verilog(top, name, folder).with_suffix(".il").unlink()
+    text = "\n".join(
+        [f"// What the topics' ports of the module {name} are; all are of the clock clk.\n", *top.texts]
+    )
+    (folder / f"{name}.vh").write_text(text, encoding="utf-8")
+    return [f"{name}.v", f"{name}.vh"]
 
 
 def wrapper(top: Ros2Ether) -> str:
