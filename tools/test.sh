@@ -1,6 +1,6 @@
 #!/bin/sh
-# The ordinary test command. The tests come last so that the line with their counts ends the output;
-# a failure of lint, types or layers is remembered and fails the command after the tests have told theirs.
+# The ordinary test command. A failure of lint, types or layers is remembered, and fails the command and is named after
+# the tests have told their counts: the end of the output says all there is to mend.
 # Arguments go to pytest; without any, every test is run.
 set -eu
 cd "$(dirname "$0")/.."
@@ -21,9 +21,6 @@ check "ruff" "$python" -m ruff check
 check "format" "$python" -m ruff format --check
 check "mypy" "$python" -m mypy
 check "layers" .venv/bin/lint-imports
-if [ -n "$failed" ]; then
-    echo "== FAILED before the tests:$failed" >&2
-fi
 echo "== pytest"
 status=0
 if [ $# -gt 0 ]; then
@@ -31,5 +28,8 @@ if [ $# -gt 0 ]; then
 else
     "$python" tools/run_tests.py || status=$?
 fi
-[ -z "$failed" ] || exit 1
+if [ -n "$failed" ]; then
+    echo "== FAILED before the tests:$failed"
+    exit 1
+fi
 exit "$status"
