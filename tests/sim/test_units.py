@@ -94,6 +94,25 @@ def test_every_statement_is_in_a_function_of_its_own_where_they_are_long(
     assert found.header.endswith("}; // struct p_top\n\n} // namespace cxxrtl_design\n")
 
 
+READ = """\tauto tmp_0 = memory_index(p_a.curr, 0, 16);
+	CXXRTL_ASSERT(tmp_0.valid && "out of bounds read");
+	if(tmp_0.valid) {
+		value<4> tmp_1 = memory_p_mem[tmp_0.index];
+		i_far = tmp_1;
+	} else {
+		i_far = value<4> {};
+	}"""
+
+
+def test_what_is_read_of_a_memory_without_a_clock_stays_with_its_index(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(units, "PART", 1)
+    bodies = functions(units.cut(DESIGN.replace("\ti_far = p_known;", READ), 1))
+    assert bodies["part2"][1:] == READ.splitlines()
+    assert bodies["part3"][1:] == STATEMENTS[3].splitlines()
+
+
 def test_what_one_function_alone_knows_stays_its_own() -> None:
     found = units.cut(DESIGN, 1)
     assert functions(found)["part0"][:4] == [

@@ -103,7 +103,8 @@ def _statements(body: str) -> tuple[list[str], dict[str, str], list[str], bool]:
                 continue
         open_.append(line)
         depth += line.count("{") - line.count("}")
-        if depth == 0:
+        # What is read of a memory without a clock: the index, and behind it the block that uses it.
+        if depth == 0 and (line == "\t}" or not open_[0].startswith("\tauto ")):
             statements.append("\n".join(open_))
             open_ = []
     if feedback is None or open_ or any("converged" in statement for statement in statements):

@@ -1,5 +1,5 @@
-"""A node with a Verilog port for each field: the module that is written, in a user's Verilog, and the node itself on a
-simulated wire with a software participant."""
+"""A node with a Verilog port for each field: the module that is written, and a user's Verilog around it, on a simulated wire
+with a software participant."""
 
 from __future__ import annotations
 
@@ -10,15 +10,13 @@ import subprocess
 from typing import Any
 
 import pytest
-from amaranth.hdl import Module
-from amaranth.lib import wiring
 
 import roslet
+from gateware.tops.written import Written
 from roslet.cli.gateware_ros import QOS, ParticipantStation
 from roslet.engine.rtps import events
 from roslet.gateware.tops.ros_node import Publish, RosNode, Subscribe
 from roslet.gateware.verilog import write_ros_node
-from roslet.gateware.wires import expose
 from roslet.gen.runtime import message_class
 from roslet.names.ros2 import TOPIC, dds_topic, dds_type
 from roslet.sim.mii import Mii
@@ -51,6 +49,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
     roslet.load(pathlib.Path(__file__).parents[3] / "examples/msgs/mros_comm_measure")
     node = RosNode("robot", topics=TOPICS, clk_hz=CLOCK / FACTOR, flat=True)
     assert write_ros_node(node, "robot", folder) == ["robot.v", "robot.vh"]
+    (folder / "user.v").write_text(USER)
     return folder
 
 
@@ -85,45 +84,17 @@ def test_without_flat_ports_it_is_refused(tmp_path: pathlib.Path) -> None:
 def test_a_users_verilog_is_built_on_it(written: pathlib.Path) -> None:
     if shutil.which("iverilog") is None:
         pytest.skip("no Icarus Verilog: tools/debian.sh installs it")
-    (written / "user.v").write_text(USER)
     command = ["iverilog", "-g2005-sv", "-Wall", "-t", "null", "-s", "user", "user.v", "robot.v"]
     done = subprocess.run(command, cwd=written, capture_output=True, text=True, check=True, timeout=60)
     assert "user.v" not in done.stderr, "no port is left out, none has another width"
 
 
-class Design(wiring.Component):
-    """The same with the node itself."""
-
-    def __init__(self) -> None:
-        self._node = RosNode("robot", topics=TOPICS, clk_hz=CLOCK / FACTOR, flat=True)
-        members = self._node.signature.members
-        self._pins = [name for name in members if not name.startswith(("cmd_vel", "place"))]
-        super().__init__({name: members[name] for name in self._pins})
-
-    def elaborate(self, platform: object) -> Module:
-        m = Module()
-        m.submodules.node = node = self._node
-        expose(m, node, self, self._pins)
-        x, z = node.cmd_vel_linear_x, node.cmd_vel_angular_z
-        m.d.comb += [
-            node.place_valid.eq(node.cmd_vel_valid),
-            node.cmd_vel_ready.eq(node.place_ready),
-            node.place_x.eq(x[32:]),
-            node.place_y.eq(0x3F800000),
-            node.place_z.eq(z[32:]),
-            node.place_time_sec.eq(-7),
-            node.place_time_nanosec.eq(x[:32]),
-        ]
-        return m
-
-
-@pytest.mark.usefixtures("written")
-def test_it_sends_and_receives() -> None:
+def test_what_was_written_sends_and_receives(written: pathlib.Path) -> None:
     twist: Any = message_class("ros2", TWIST)
     coordinate: Any = message_class("ros2", COORDINATE)
     got: list[Any] = []
     matched: list[str] = []
-    with Model(Design()) as model:
+    with Model(Written("user", [written / "robot.v", written / "user.v"])) as model:
         for name, hertz in (("clk", CLOCK), ("phy_rx_clk", PHY_CLOCK), ("phy_tx_clk", PHY_CLOCK)):
             model.clock(name, hertz)
         model.set("rst_n", 0)
