@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from amaranth.hdl import C, Cat, Module, Mux, Shape, Signal, Value, signed
-from amaranth.lib import data, memory, wiring
+from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
+from roslet.gateware.rtps.column_rom import ColumnRom
 from roslet.gateware.rtps.ports import READ_LATENCY, ReadSignature
 from roslet.gateware.rtps.rom import ALIGNMENT, DO, WORD_BITS, Op, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
@@ -84,10 +85,7 @@ class Composer(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        m.submodules.rom = rom = memory.Memory(
-            shape=WORD_BITS, depth=len(self._rom.words), init=self._rom.words
-        )
-        read = rom.read_port()
+        m.submodules.rom = rom = ColumnRom(self._rom.words, WORD_BITS)
         subject = self.subject
         # Who says where has thought about it for most of a cycle.
         at, load, start = Signal.like(self.at), Signal(), Signal()
@@ -106,11 +104,11 @@ class Composer(wiring.Component):
         m.d.comb += [
             in_message.eq(there & (op == Op.MESSAGE.value) & (word != words)),
             last.eq(there & does & do.end),
-            read.addr.eq(here),
-            read.en.eq(~in_message),
+            rom.addr.eq(here),
+            rom.en.eq(~in_message),
         ]
         with m.If(~in_message):
-            m.d.sync += [item.eq(read.data), coming.eq(running), there.eq(coming)]
+            m.d.sync += [item.eq(rom.data), coming.eq(running), there.eq(coming)]
             with m.If(running):
                 m.d.sync += here.eq(here + 1)
         with m.If(load):
