@@ -9,7 +9,7 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
 from roslet.gateware.drops import drop_outputs
-from roslet.gateware.fifo import WholeFrameFifo
+from roslet.gateware.fifo import FrameStage, WholeFrameFifo
 from roslet.gateware.stream import FrameSignature
 from roslet.gateware.uart import UART_RX, UartRx, UartTx
 from roslet.wire.net import ethernet, slip
@@ -130,8 +130,10 @@ class SlipTx(wiring.Component):
         m = Module()
         m.submodules.queue = queue = self._queue
         connect(m, flipped(self.i), queue.i)
+        m.submodules.stage = stage = FrameStage()  # what block RAM gives is late for what is done with it
+        connect(m, queue.o, stage.i)
         m.d.comb += self.drop_too_long.eq(queue.drop_too_long)
-        item, o = queue.o.stream, self.o
+        item, o = stage.o.stream, self.o
         is_end, is_escape = Signal(), Signal()
         m.d.comb += [
             is_end.eq(item.payload.data == slip.END),
