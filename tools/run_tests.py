@@ -61,12 +61,15 @@ class Part:
 
 
 def yielding() -> list[str]:
-    """The tests that need nothing but a processor: blocks simulated cycle by cycle, proofs, C++ headers compiled."""
-    tests = ROOT / "tests"
-    found = [tests / "gateware" / "typed"]
-    for pattern in ("gateware/test_*.py", "gen/test_cpp*.py"):
-        found += sorted(tests.glob(pattern))
-    return [str(path.relative_to(ROOT)) for path in found]
+    """The tests that need nothing but a processor: gateware simulated or proven, without a peer; C++ headers compiled."""
+    found = [
+        path
+        for pattern in ("gateware/**/test_*.py", "gen/test_cpp*.py")
+        for path in ROOT.glob(f"tests/{pattern}")
+    ]
+    return sorted(
+        str(path.relative_to(ROOT)) for path in found if not path.stem.endswith(("_peers", "_linux"))
+    )
 
 
 def run_beside(quiet: Part, other: Part) -> set[int]:
