@@ -66,10 +66,10 @@ class Node:
         self.bench.count("drop_arp", "drop_busy")
         self.dut: Any = self.bench.dut
 
-    async def tell(self, ctx: Any, *frames: bytes) -> None:
+    async def tell(self, ctx: Any, *frames: bytes, gap: int = GAP) -> None:
         port = self.dut.i.stream
         for frame in frames:
-            await ctx.tick().repeat(GAP)
+            await ctx.tick().repeat(gap)
             items = [{"data": octet, "end": 0, "bad": 0} for octet in frame]
             for item in [*items, {"data": 0, "end": 1, "bad": isinstance(frame, Bad)}]:
                 ctx.set(port.payload, item)
@@ -511,6 +511,24 @@ def test_one_reply_waits_while_one_is_sent_and_the_newest_is_kept(stuck: bool, l
     assert node.bench.counts["drop_busy"] == lost
     last = node.frames[-1]
     assert last == (neighbour(4)[0], message(2, MAC, IP, *neighbour(4)))
+
+
+def test_whenever_the_next_message_comes_a_reply_is_to_one_that_was_whole() -> None:
+    node = Node(stalls=0)
+    askers = [(bytes([16 * n, *PEER_MAC[1:5], n]), address(f"192.168.1.{n}")) for n in (1, 2, 3)]
+    gaps = range(1, 80)  # one is answered while the next ones come
+
+    async def process(ctx: Any) -> None:
+        await node.rest(ctx)
+        for gap in gaps:
+            await node.tell(ctx, *(request(*asker) for asker in askers), gap=gap)
+            await node.rest(ctx, 300)
+
+    node.run(process)
+    replies = [(mac, message(2, MAC, IP, mac, ip)) for mac, ip in askers]
+    assert all(frame in replies for frame in node.frames)
+    assert len(node.frames) + node.bench.counts["drop_busy"] == 3 * len(gaps)
+    assert all(node.frames.count(frame) > 50 for frame in replies) and node.bench.counts["drop_busy"] > 0
 
 
 def test_a_message_is_taken_an_octet_a_cycle_whatever_becomes_of_it() -> None:

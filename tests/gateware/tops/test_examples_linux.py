@@ -57,6 +57,8 @@ def test_rclpy_sees_it_hears_it_and_lights_its_leds(example: str, kind: str, tmp
         if example == "topic-pub-sub":
             first = int(said["got"][0][-4:])
             assert said["got"] == [f"Message from FPGA - {first + n:04}" for n in range(len(said["got"]))]
+        else:  # its types are known where it is generated
+            assert said["hashes"] == said["own"] and len(said["own"]) == 1
         wait(bench.simulation, "the LEDs", lambda said: said.get("leds") == 15)
 
 

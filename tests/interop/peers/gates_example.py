@@ -47,6 +47,8 @@ while time.monotonic() < ends and not stopped:
             "subscribers": publisher.get_subscription_count(),
             "types": [info.topic_type for info in infos],
             "publishers": [info.node_name for info in infos],
+            "hashes": [str(info.topic_type_hash) for info in infos],
+            "own": [str(info.topic_type_hash) for info in node.get_subscriptions_info_by_topic(topic)],
         }
         print(json.dumps(said), flush=True)
 node.destroy_node()
