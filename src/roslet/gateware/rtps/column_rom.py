@@ -15,8 +15,8 @@ SHALLOW = 1 << 10
 
 
 class ColumnRom(wiring.Component):
-    """`words` of `width` bits. Of more than SHALLOW each column is as narrow as one block is deep enough for: synthesis would
-    take the fewest blocks, and choose from what all of them give.
+    """`words` of `width` bits. Of more than SHALLOW each column is as narrow as one block is deep enough for: synthesis
+    would take the fewest blocks, and choose from what all of them give.
 
     Ports: `addr`, and `data`, what lies there, a cycle later if `en`.
     """
