@@ -81,10 +81,8 @@ class Arp(wiring.Component):
         ]
 
         # A message is learned from first, and then answered to the addresses that were written as they came.
-        answer = Signal()  # in the cycle before it was its turn
         m.d.comb += [
-            rx.hold.eq(cache.learn | answer),
-            tx.reply.eq(answer),
+            rx.hold.eq(cache.learn | tx.reply),
             tx.write.eq(rx.take),
             tx.place.eq(rx.place),
             tx.octet.eq(self.i.stream.payload.data),
@@ -107,13 +105,13 @@ class Arp(wiring.Component):
 
         replied = Signal()  # the last was a reply
         m.d.comb += tx.ip.eq(ask_ip)
-        m.d.sync += answer.eq(0)
-        with m.If(tx.ready & ~answer):
+        with m.If(tx.ready):
             with m.If(announcing):
                 m.d.comb += tx.announce.eq(1)
                 m.d.sync += announcing.eq(0)
             with m.Elif(replying & ~cache.learn & ~(replied & asking)):
-                m.d.sync += [answer.eq(~rx.overwritten), replying.eq(0), replied.eq(1)]
+                m.d.comb += tx.reply.eq(1)
+                m.d.sync += [replying.eq(0), replied.eq(1)]
             with m.Elif(asking):
                 m.d.comb += tx.request.eq(1)
                 m.d.sync += [asking.eq(0), replied.eq(0)]

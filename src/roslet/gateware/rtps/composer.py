@@ -8,7 +8,7 @@ from amaranth.hdl import C, Cat, Module, Mux, Shape, Signal, Value, signed
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from roslet.gateware.rtps.column_rom import ColumnRom
+from roslet.gateware.rtps.columns import rom_columns
 from roslet.gateware.rtps.ports import READ_LATENCY, ReadSignature
 from roslet.gateware.rtps.rom import ALIGNMENT, DO, WORD_BITS, Op, Rom
 from roslet.gateware.rtps.tables import OwnMap, PeerMap
@@ -85,7 +85,7 @@ class Composer(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        m.submodules.rom = rom = ColumnRom(self._rom.words, WORD_BITS)
+        reads = rom_columns(m, self._rom.words, WORD_BITS)
         subject = self.subject
         # Who says where has thought about it for most of a cycle.
         at, load, start = Signal.like(self.at), Signal(), Signal()
@@ -104,11 +104,11 @@ class Composer(wiring.Component):
         m.d.comb += [
             in_message.eq(there & (op == Op.MESSAGE.value) & (word != words)),
             last.eq(there & does & do.end),
-            rom.addr.eq(here),
-            rom.en.eq(~in_message),
         ]
+        for read in reads:
+            m.d.comb += [read.addr.eq(here), read.en.eq(~in_message)]
         with m.If(~in_message):
-            m.d.sync += [item.eq(rom.data), coming.eq(running), there.eq(coming)]
+            m.d.sync += [item.eq(Cat(read.data for read in reads)), coming.eq(running), there.eq(coming)]
             with m.If(running):
                 m.d.sync += here.eq(here + 1)
         with m.If(load):

@@ -155,15 +155,18 @@ class Participant(wiring.Component):
         connect(m, outbox.lookup, flipped(self.lookup))
         for n in range(self._users):
             connect(m, flipped(getattr(self, f"publish{n}")), getattr(sender, f"publish{n}"))
-        m.submodules.user = user = MessageRegister(USER)  # from here on it goes far, to each reader
-        connect(m, submessages.user, user.i)
+        user = submessages.user
+        if self._readers > 1:  # from here on it goes far
+            m.submodules.user = register = MessageRegister(USER)
+            connect(m, user, register.i)
+            user = register.o
         for n in range(self._readers):
             receive = getattr(self, f"receive{n}")
-            m.d.comb += [receive.stream.payload.eq(user.o.stream.payload), receive.meta.eq(user.o.meta)]
-            with m.If(user.o.meta.reader == n):
+            m.d.comb += [receive.stream.payload.eq(user.stream.payload), receive.meta.eq(user.meta)]
+            with m.If(user.meta.reader == n):
                 m.d.comb += [
-                    receive.stream.valid.eq(user.o.stream.valid),
-                    user.o.stream.ready.eq(receive.stream.ready),
+                    receive.stream.valid.eq(user.stream.valid),
+                    user.stream.ready.eq(receive.stream.ready),
                 ]
         m.d.comb += [
             walker.known.eq(queue.known),

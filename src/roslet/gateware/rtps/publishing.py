@@ -23,9 +23,14 @@ def publish(
     """
     ports, subject, own, start_of = work.ports, work.subject, work.own, work.rom.start
     local, endpoint, words = subject.local, subject.endpoint, subject.words
+    item, offered, valid = Signal.like(streams[0].payload), Signal(), Signal()
     its = local[: (len(streams) - 1).bit_length()]
-    # One word waits in a register: choosing it of many streams takes as long as what its `ready` leads to.
-    item, waits, valid, fetch = Signal.like(streams[0].payload), Signal(), Signal(), Signal()
+    chosen = [
+        item.eq(Array(Value.cast(one.payload) for one in streams)[its]),
+        offered.eq(Array(one.valid for one in streams)[its]),
+    ]
+    if len(streams) == 1:
+        m.d.comb += chosen
     most = work.choose([C(one.words, len(words)) for one in own.writers])
     before = work.choose([C(one.depth - 1, len(subject.oldest)) for one in own.writers])  # kept at most
     reliable = work.choose([C(one.reliable, 1) for one in own.writers])
@@ -44,17 +49,17 @@ def publish(
         work.run(m, start_of["next"])
         m.next = "KEEP"
     with m.State("KEEP"):
-        m.d.comb += [
-            valid.eq(waits & work.placed & (work.counted | ~item.end)),
-            fetch.eq(~waits | (work.placed & ~item.end)),
-        ]
+        ready = work.placed & (work.counted | ~item.end)
+        m.d.comb += valid.eq(offered & ready)
+        fetch = ready
+        if len(streams) > 1:  # a word waits in a register: it is chosen late, and `ready` leads far
+            fetch = ~offered | (work.placed & ~item.end)
+            with m.If(fetch):
+                m.d.sync += chosen
+            with m.Elif(valid):
+                m.d.sync += offered.eq(0)
         for n, one in enumerate(streams):
             m.d.comb += one.ready.eq((local == n) & fetch)
-        with m.If(fetch):
-            m.d.sync += [
-                item.eq(Array(Value.cast(one.payload) for one in streams)[its]),
-                waits.eq(Array(one.valid for one in streams)[its]),
-            ]
         m.d.comb += [ports.write.addr.eq(subject.sample | (words + 1)), ports.write.data.eq(item.data)]
         with m.If(valid & ~item.end):
             with m.If(full):
@@ -69,7 +74,6 @@ def publish(
                 ports.write.data[16:18].eq(item.padding),
             ]
         with m.If(valid & item.end):
-            m.d.sync += waits.eq(0)
             with m.If(item.bad | long):
                 for n, dropped in enumerate(drop_long):
                     m.d.comb += dropped.eq((local == n) & ~item.bad)

@@ -378,20 +378,15 @@ class Submessages(wiring.Component):
                     with m.If(is_heartbeat):
                         m.next = "JUDGE HEARTBEAT"
             told = Signal()  # a heartbeat told of a number behind this one
-            # As it was a cycle before: whether it is for another of our readers, and whether ours has room
-            elsewhere, room = Signal(), Signal()
-            m.d.sync += [
-                elsewhere.eq(~builtin & ~for_any & (reader_number != ours + 1)),
-                room.eq(self.room.bit_select(ours, 1)),
-            ]
             with m.State("JUDGE"):
+                room = self.room.bit_select(ours, 1)
                 m.d.sync += told.eq(difference[31])
                 m.next = "DROP"
                 with m.If(wrong):
                     m.next = "DROP"
                 with m.Elif(spdp):
                     m.next = "DISCOVERY"
-                with m.Elif(~found | elsewhere):
+                with m.Elif(~found | (~builtin & ~for_any & (reader_number != ours + 1))):
                     m.d.sync += unmatched.eq(1)
                 with m.Elif(behind):
                     m.d.sync += old.eq(1)
