@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import pathlib
 import random
+from collections.abc import Sequence
 from typing import Any
 
 import pytest
-from amaranth.hdl import Module
+from amaranth.hdl import ClockDomain, ClockSignal, Module, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import connect
 
@@ -26,10 +27,11 @@ from sim.test_wire import ParticipantStation
 
 pytestmark = pytest.mark.timeout(600)  # the design is compiled
 COORDINATE, TWIST = "mros_comm_measure/msg/Coordinate", "geometry_msgs/msg/Twist"
-STRING, OCTET = "std_msgs/msg/String", "std_msgs/msg/UInt8"
+STRING, OCTET, NUMBER = "std_msgs/msg/String", "std_msgs/msg/UInt8", "std_msgs/msg/UInt32"
 CLOCK, PHY_CLOCK, FACTOR = 25e6, 25e6, 50.0
 # The type, the bound of its texts, whether it is reliable, and how many messages the node keeps
-PAIRS = [
+Pair = tuple[str, int | None, bool, int]
+PAIRS: list[Pair] = [
     (STRING, 40, True, 1),
     (COORDINATE, None, True, 4),
     (OCTET, None, True, 1),
@@ -37,14 +39,19 @@ PAIRS = [
     (TWIST, None, True, 1),
     (COORDINATE, None, False, 1),
 ]
+COUNTED: list[Pair] = [(NUMBER, None, True, 1), (COORDINATE, None, True, 2), (NUMBER, None, False, 1)]
 EACH = 12
+
+
+@pytest.fixture(scope="module", autouse=True)
+def types() -> None:
+    roslet.load(pathlib.Path(__file__).parents[3] / "examples/msgs/mros_comm_measure")
 
 
 class Echoes(wiring.Component):
     """What comes on `in<n>` goes out on `out<n>`."""
 
     def __init__(self) -> None:
-        roslet.load(pathlib.Path(__file__).parents[3] / "examples/msgs/mros_comm_measure")
         topics: list[Publish | Subscribe] = []
         for n, (type_, bound, reliable, depth) in enumerate(PAIRS):
             topics.append(Subscribe(f"in{n}", type_, bound, reliable=reliable))
@@ -63,29 +70,57 @@ class Echoes(wiring.Component):
         return m
 
 
+class Counters(wiring.Component):
+    """Numbers on each of `COUNTED`, always the next."""
+
+    def __init__(self) -> None:
+        topics = [
+            Publish(f"out{n}", pair[0], reliable=pair[2], depth=pair[3]) for n, pair in enumerate(COUNTED)
+        ]
+        self._node = RosNode("counters", topics=topics, clk_hz=CLOCK / FACTOR)
+        members = self._node.signature.members
+        self._pins = [name for name in members if not name.startswith("out")]
+        super().__init__({name: members[name] for name in self._pins})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.submodules.node = node = self._node
+        m.domains.sync = ClockDomain(reset_less=True)
+        m.d.comb += ClockSignal("sync").eq(self.clk)
+        expose(m, node, self, self._pins)
+        for n, (type_, *_) in enumerate(COUNTED):
+            out, number = getattr(node, f"out{n}"), Signal(32)
+            m.d.comb += [
+                out.valid.eq(1),
+                (out.payload.time.nanosec if type_ == COORDINATE else out.payload.data).eq(number),
+            ]
+            with m.If(out.ready):
+                m.d.sync += number.eq(number + 1)
+        return m
+
+
 class Peer:
     """A software participant that reads all that the node publishes, and writes what it takes."""
 
-    def __init__(self, number: int, wire: Wire) -> None:
+    def __init__(self, number: int, wire: Wire, pairs: Sequence[Pair]) -> None:
         self._station = ParticipantStation(number, wire.hub.port())
         wire.add(self._station)
         participant = self._station.participant
         self.writers, self._topics = [], {}
-        for n, (type_, _, reliable, _) in enumerate(PAIRS):
+        for n, (type_, _, reliable, _) in enumerate(pairs):
             qos = RELIABLE if reliable else BEST_EFFORT
             named = [dds_topic(TOPIC, f"/{way}{n}") for way in ("in", "out")]
             self.writers.append(participant.create_writer(named[0], dds_type(type_), qos, wire.now))
             reader = participant.create_reader(named[1], dds_type(type_), qos, wire.now)
             self._topics[reader.entity_id] = n
 
-    def matched(self) -> bool:
-        return sum(isinstance(event, events.EndpointMatched) for event in self._station.events) >= 2 * len(
-            PAIRS
-        )
+    def matched(self) -> int:
+        """How many endpoints match ours."""
+        return sum(isinstance(event, events.EndpointMatched) for event in self._station.events)
 
     def got(self) -> list[list[bytes]]:
         """The messages of each topic, without encapsulation headers and padding."""
-        found: list[list[bytes]] = [[] for _ in PAIRS]
+        found: list[list[bytes]] = [[] for _ in self.writers]
         for event in self._station.events:
             if isinstance(event, events.SampleReceived):
                 payload = bytes(event.payload)
@@ -108,19 +143,25 @@ def message(rng: random.Random, topic: int, number: int) -> bytes:
     return bytes(made.serialize())
 
 
+def started(model: Model) -> Wire:
+    """The design is out of its reset, on this wire."""
+    for name, hertz in (("clk", CLOCK), ("phy_rx_clk", PHY_CLOCK), ("phy_tx_clk", PHY_CLOCK)):
+        model.clock(name, hertz)
+    model.set("rst_n", 0)
+    model.run(1e-6)
+    model.set("rst_n", 1)
+    wire = Wire(FACTOR)
+    wire.gateware(model, Mii(model))
+    return wire
+
+
 @pytest.mark.parametrize("at_once", [1, 5, EACH * len(PAIRS)])
 def test_messages_of_all_topics_come_back_on_theirs_in_their_order(at_once: int) -> None:
     rng = random.Random(at_once)
     with Model(Echoes()) as model:
-        for name, hertz in (("clk", CLOCK), ("phy_rx_clk", PHY_CLOCK), ("phy_tx_clk", PHY_CLOCK)):
-            model.clock(name, hertz)
-        model.set("rst_n", 0)
-        model.run(1e-6)
-        model.set("rst_n", 1)
-        wire = Wire(FACTOR)
-        wire.gateware(model, Mii(model))
-        peers = [Peer(number, wire) for number in (2, 3)]
-        assert wire.run(20.0, lambda: all(peer.matched() for peer in peers)), "all find all"
+        wire = started(model)
+        peers = [Peer(number, wire, PAIRS) for number in (2, 3)]
+        assert wire.run(20.0, lambda: all(peer.matched() >= 2 * len(PAIRS) for peer in peers)), "all find all"
         order = [topic for topic in range(len(PAIRS)) for _ in range(EACH)]
         rng.shuffle(order)
         sent: list[list[bytes]] = [[] for _ in PAIRS]
@@ -139,3 +180,16 @@ def test_messages_of_all_topics_come_back_on_theirs_in_their_order(at_once: int)
         for got, given in zip(peer.got(), sent, strict=True):
             places = [given.index(one) for one in got]
             assert places == sorted(set(places)) and len(places) >= (EACH if at_once == 1 else 1)
+
+
+def test_topics_that_always_have_a_message_take_turns_and_lose_none() -> None:
+    with Model(Counters()) as model:
+        wire = started(model)
+        peer = Peer(2, wire, COUNTED)
+        assert wire.run(20.0, lambda: peer.matched() >= len(COUNTED))
+        assert wire.run(20.0, lambda: all(len(got) >= 100 for got in peer.got()))
+        wire.close()
+    for topic, got in enumerate(peer.got()):
+        numbers = [int.from_bytes(data[-4:], "little") for data in got]
+        assert numbers == list(range(numbers[0], numbers[0] + len(numbers))), topic
+        assert len(numbers) < 150, "each has its share"
