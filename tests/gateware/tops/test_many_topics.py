@@ -3,7 +3,6 @@ belong, whole and in order, however they come together."""
 
 from __future__ import annotations
 
-import pathlib
 import random
 from collections.abc import Sequence
 from typing import Any
@@ -11,12 +10,11 @@ from typing import Any
 import pytest
 from amaranth.hdl import ClockDomain, ClockSignal, Module, Signal
 from amaranth.lib import wiring
-from amaranth.lib.wiring import connect
 
-import roslet
 from engine.rtps.network import BEST_EFFORT, RELIABLE
+from gateware.tops.many_node import COORDINATE, OCTET, PAIRS, STRING, TWIST, Echoes, Pair, load
 from roslet.engine.rtps import events
-from roslet.gateware.tops.ros_node import Publish, RosNode, Subscribe
+from roslet.gateware.tops.ros_node import Publish, RosNode
 from roslet.gateware.wires import expose
 from roslet.gen.runtime import message_class
 from roslet.names.ros2 import TOPIC, dds_topic, dds_type
@@ -26,54 +24,17 @@ from roslet.sim.wire import Wire
 from sim.test_wire import ParticipantStation
 
 pytestmark = pytest.mark.timeout(600)  # the design is compiled
-COORDINATE, TWIST = "mros_comm_measure/msg/Coordinate", "geometry_msgs/msg/Twist"
-STRING, OCTET, NUMBER = "std_msgs/msg/String", "std_msgs/msg/UInt8", "std_msgs/msg/UInt32"
+NUMBER = "std_msgs/msg/UInt32"
 CLOCK, PHY_CLOCK, FACTOR = 25e6, 25e6, 50.0
-# The type, the bound of its texts, whether it is reliable, and how many messages the node keeps
-Pair = tuple[str, int | None, bool, int]
-PAIRS: list[Pair] = [
-    (STRING, 40, True, 1),
-    (COORDINATE, None, True, 4),
-    (OCTET, None, True, 1),
-    (STRING, 200, True, 2),
-    (TWIST, None, True, 1),
-    (COORDINATE, None, False, 1),
-]
 COUNTED: list[Pair] = [(NUMBER, None, True, 1), (COORDINATE, None, True, 2), (NUMBER, None, False, 1)]
 EACH = 12
-
-
-@pytest.fixture(scope="module", autouse=True)
-def types() -> None:
-    roslet.load(pathlib.Path(__file__).parents[3] / "examples/msgs/mros_comm_measure")
-
-
-class Echoes(wiring.Component):
-    """What comes on `in<n>` goes out on `out<n>`."""
-
-    def __init__(self) -> None:
-        topics: list[Publish | Subscribe] = []
-        for n, (type_, bound, reliable, depth) in enumerate(PAIRS):
-            topics.append(Subscribe(f"in{n}", type_, bound, reliable=reliable))
-            topics.append(Publish(f"out{n}", type_, bound, reliable=reliable, depth=depth))
-        self._node = RosNode("echoes", topics=topics, clk_hz=CLOCK / FACTOR, endpoints=32)
-        members = self._node.signature.members
-        self._pins = [name for name in members if not name.startswith(("in", "out"))]
-        super().__init__({name: members[name] for name in self._pins})
-
-    def elaborate(self, platform: object) -> Module:
-        m = Module()
-        m.submodules.node = node = self._node
-        expose(m, node, self, self._pins)
-        for n in range(len(PAIRS)):
-            connect(m, getattr(node, f"in{n}"), getattr(node, f"out{n}"))
-        return m
 
 
 class Counters(wiring.Component):
     """Numbers on each of `COUNTED`, always the next."""
 
     def __init__(self) -> None:
+        load()
         topics = [
             Publish(f"out{n}", pair[0], reliable=pair[2], depth=pair[3]) for n, pair in enumerate(COUNTED)
         ]
@@ -158,7 +119,7 @@ def started(model: Model) -> Wire:
 @pytest.mark.parametrize("at_once", [1, 5, EACH * len(PAIRS)])
 def test_messages_of_all_topics_come_back_on_theirs_in_their_order(at_once: int) -> None:
     rng = random.Random(at_once)
-    with Model(Echoes()) as model:
+    with Model(Echoes(CLOCK / FACTOR)) as model:
         wire = started(model)
         peers = [Peer(number, wire, PAIRS) for number in (2, 3)]
         assert wire.run(20.0, lambda: all(peer.matched() >= 2 * len(PAIRS) for peer in peers)), "all find all"
