@@ -13,6 +13,7 @@ from amaranth.lib.cdc import ResetSynchronizer
 from amaranth.lib.wiring import In, Out
 
 from gateware.collisions import SpoiledCollisions
+from gateware.running import started
 from roslet.cli.gateware_sim import dropped
 from roslet.gateware.rtps import tables
 from roslet.gateware.rtps.tables import Local
@@ -20,7 +21,6 @@ from roslet.gateware.tops.ros_core import Identity, RosCore
 from roslet.gateware.wires import expose
 from roslet.idl import Registry, type_hash
 from roslet.sim.compile import build
-from roslet.sim.mii import Mii
 from roslet.sim.model import Model
 from roslet.sim.wire import Wire
 
@@ -28,7 +28,7 @@ ADDRESS = "192.168.1.100"
 TYPE = "std_msgs::msg::dds_::UInt32_"
 FIRST = 65_500
 HASH = type_hash(Registry("ros2", None), "std_msgs/msg/UInt32")
-CLOCK, PHY_CLOCK, FACTOR = 25e6, 25e6, 250.0
+CLOCK, FACTOR = 25e6, 250.0
 
 
 class CounterNode(wiring.Component):
@@ -106,13 +106,8 @@ class Running:
     ) -> None:
         library, self.reasons = compiled(CLOCK / FACTOR, rate, reliable)
         self.model = Model(library)
-        for name, hertz in (("clk", CLOCK), ("phy_rx_clk", PHY_CLOCK), ("phy_tx_clk", PHY_CLOCK)):
-            self.model.clock(name, hertz)
-        self.model.set("rst_n", 0)
-        self.model.run(1e-6)
-        self.model.set("rst_n", 1)
         self.wire = wire or Wire(FACTOR)
-        self.gates = self.wire.gateware(self.model, Mii(self.model), link)
+        self.gates = started(self.model, self.wire, CLOCK, link)
 
     def __enter__(self) -> Running:
         return self

@@ -9,17 +9,15 @@ from __future__ import annotations
 import json
 import pathlib
 import signal
-import subprocess
 import sys
 from typing import Any
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2]))
 
 from gateware.rtps.counter_node import FACTOR, Running
-from roslet.sim.tap import Tap
+from gateware.running import plug_tap
 from roslet.sim.wire import Wire
 
-HOST = "192.168.1.10/24"
 LOOK = 0.1
 
 
@@ -27,13 +25,7 @@ def main() -> None:
     seconds = float(sys.argv[1])
     wire = Wire(FACTOR, 1.0)
     with Running(reliable=True, wire=wire) as node:
-        wire.tap(Tap("tap0"))
-        for command in (
-            ["ip", "address", "add", HOST, "dev", "tap0"],
-            ["ip", "link", "set", "tap0", "up"],
-            ["ip", "route", "add", "224.0.0.0/4", "dev", "tap0"],
-        ):
-            subprocess.run(command, check=True)
+        plug_tap(wire)
         capture = wire.capture(pathlib.Path(sys.argv[3])) if len(sys.argv) > 3 else None
         node.model.set("enable", 1)
         print("up", flush=True)

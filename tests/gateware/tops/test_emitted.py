@@ -11,11 +11,11 @@ import pytest
 from amaranth.lib.wiring import Out
 
 from engine.rtps.network import RELIABLE
+from gateware.running import started
 from gateware.tops.ros2_node import (
     CLOCK,
     CLOCK_HZ,
     FACTOR,
-    PHY_CLOCK,
     PREFIX,
     PUBLISHED,
     SUBSCRIBED,
@@ -27,7 +27,6 @@ from roslet.engine.rtps import events
 from roslet.gateware.config import Config
 from roslet.gateware.tops.ros2_ether import Ros2Ether
 from roslet.gateware.verilog import write_ros2_ether
-from roslet.sim.mii import Mii
 from roslet.sim.model import Model
 from roslet.sim.wire import Wire
 from sim.test_wire import ParticipantStation
@@ -133,13 +132,8 @@ def _constant(bits: int | str, octets: bytes) -> str:
 
 def test_messages_go_both_ways_through_what_was_written(tmp_path: pathlib.Path) -> None:
     with Model(board(tmp_path)) as model:
-        for name, hertz in (("clk", CLOCK), ("phy_rx_clk", PHY_CLOCK), ("phy_tx_clk", PHY_CLOCK)):
-            model.clock(name, hertz)
-        model.set("rst_n", 0)
-        model.run(1e-6)
-        model.set("rst_n", 1)
         wire = Wire(FACTOR)
-        wire.gateware(model, Mii(model))
+        started(model, wire, CLOCK)
         peer = ParticipantStation(2, wire.hub.port())
         wire.add(peer)
         peer.participant.create_reader(PUBLISHED, TYPE, RELIABLE, wire.now)

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 import roslet
+from gateware.running import started
 from gateware.tops.written import Written
 from roslet.cli.gateware_ros import QOS, ParticipantStation
 from roslet.engine.rtps import events
@@ -19,13 +20,12 @@ from roslet.gateware.tops.ros_node import Publish, RosNode, Subscribe
 from roslet.gateware.verilog import write_ros_node
 from roslet.gen.runtime import message_class
 from roslet.names.ros2 import TOPIC, dds_topic, dds_type
-from roslet.sim.mii import Mii
 from roslet.sim.model import Model
 from roslet.sim.wire import Wire
 
 pytestmark = pytest.mark.timeout(400)  # the design is compiled
 COORDINATE, TWIST = "mros_comm_measure/msg/Coordinate", "geometry_msgs/msg/Twist"
-CLOCK, PHY_CLOCK, FACTOR = 25e6, 25e6, 50.0
+CLOCK, FACTOR = 25e6, 50.0
 TOPICS: list[Publish | Subscribe] = [Subscribe("cmd_vel", TWIST), Publish("place", COORDINATE)]
 # The user's part: the upper halves of two float64, which are float32 as good as any, come back.
 USER = """
@@ -95,13 +95,8 @@ def test_what_was_written_sends_and_receives(written: pathlib.Path) -> None:
     got: list[Any] = []
     matched: list[str] = []
     with Model(Written("user", [written / "robot.v", written / "user.v"])) as model:
-        for name, hertz in (("clk", CLOCK), ("phy_rx_clk", PHY_CLOCK), ("phy_tx_clk", PHY_CLOCK)):
-            model.clock(name, hertz)
-        model.set("rst_n", 0)
-        model.run(1e-6)
-        model.set("rst_n", 1)
         wire = Wire(FACTOR)
-        wire.gateware(model, Mii(model))
+        started(model, wire, CLOCK)
         station = ParticipantStation(wire.hub.port())
         wire.add(station)
         peer = station.participant

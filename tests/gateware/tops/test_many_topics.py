@@ -12,20 +12,20 @@ from amaranth.hdl import ClockDomain, ClockSignal, Module, Signal
 from amaranth.lib import wiring
 
 from engine.rtps.network import BEST_EFFORT, RELIABLE
-from gateware.tops.many_node import COORDINATE, OCTET, PAIRS, STRING, TWIST, Echoes, Pair, load
+from gateware.running import started
+from gateware.tops.echo_nodes import COORDINATE, OCTET, PAIRS, STRING, TWIST, Many, Pair, load
 from roslet.engine.rtps import events
 from roslet.gateware.tops.ros_node import Publish, RosNode
 from roslet.gateware.wires import expose
 from roslet.gen.runtime import message_class
 from roslet.names.ros2 import TOPIC, dds_topic, dds_type
-from roslet.sim.mii import Mii
 from roslet.sim.model import Model
 from roslet.sim.wire import Wire
 from sim.test_wire import ParticipantStation
 
 pytestmark = pytest.mark.timeout(600)  # the design is compiled
 NUMBER = "std_msgs/msg/UInt32"
-CLOCK, PHY_CLOCK, FACTOR = 25e6, 25e6, 50.0
+CLOCK, FACTOR = 25e6, 50.0
 COUNTED: list[Pair] = [(NUMBER, None, True, 1), (COORDINATE, None, True, 2), (NUMBER, None, False, 1)]
 EACH = 12
 
@@ -104,23 +104,12 @@ def message(rng: random.Random, topic: int, number: int) -> bytes:
     return bytes(made.serialize())
 
 
-def started(model: Model) -> Wire:
-    """The design is out of its reset, on this wire."""
-    for name, hertz in (("clk", CLOCK), ("phy_rx_clk", PHY_CLOCK), ("phy_tx_clk", PHY_CLOCK)):
-        model.clock(name, hertz)
-    model.set("rst_n", 0)
-    model.run(1e-6)
-    model.set("rst_n", 1)
-    wire = Wire(FACTOR)
-    wire.gateware(model, Mii(model))
-    return wire
-
-
 @pytest.mark.parametrize("at_once", [1, 5, EACH * len(PAIRS)])
 def test_messages_of_all_topics_come_back_on_theirs_in_their_order(at_once: int) -> None:
     rng = random.Random(at_once)
-    with Model(Echoes(CLOCK / FACTOR)) as model:
-        wire = started(model)
+    with Model(Many(CLOCK / FACTOR)) as model:
+        wire = Wire(FACTOR)
+        started(model, wire, CLOCK)
         peers = [Peer(number, wire, PAIRS) for number in (2, 3)]
         assert wire.run(20.0, lambda: all(peer.matched() >= 2 * len(PAIRS) for peer in peers)), "all find all"
         order = [topic for topic in range(len(PAIRS)) for _ in range(EACH)]
@@ -145,7 +134,8 @@ def test_messages_of_all_topics_come_back_on_theirs_in_their_order(at_once: int)
 
 def test_topics_that_always_have_a_message_take_turns_and_lose_none() -> None:
     with Model(Counters()) as model:
-        wire = started(model)
+        wire = Wire(FACTOR)
+        started(model, wire, CLOCK)
         peer = Peer(2, wire, COUNTED)
         assert wire.run(20.0, lambda: peer.matched() >= len(COUNTED))
         assert wire.run(20.0, lambda: all(len(got) >= 100 for got in peer.got()))
